@@ -37,7 +37,8 @@ namespace {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Raises an exception of the package by the name of its class.
+/// Raises an exception of the Python package.
+/// \param name name of the exception's class
 void raise(const char* name, const py::args& arguments) {
   const py::object type = py::module_::import("retrace._errors").attr(name);
   PyErr_SetObject(type.ptr(), type(*arguments).ptr());

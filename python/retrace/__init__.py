@@ -1,11 +1,11 @@
-"""retrace: optical ray tracing of retroreflectors, and programs that cut them.
+"""retrace: optical ray tracing of retroreflectors, and NC programs that machine them.
 
     import retrace as rt
     design = rt.Design.load("honeycomb.toml").replace({"element.aperture_mm": 0.5})
     result = rt.rre(design, incidence_deg=[0, 10, 20])
     result.rre, result.ledger["transmitted"], result.to_pandas()
 
-Names, units, defaults and numbers are those of the command line and its JSON documents
+Names, units, defaults and numbers are the same as on the command line and in its JSON documents
 (docs/python.md).
 """
 

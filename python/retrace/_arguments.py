@@ -139,7 +139,7 @@ def pairs(name: str, values: object) -> list[tuple[float, float]]:
 
 
 def word(name: str, value: object, words: Sequence[str] = ()) -> str:
-    """Checks that a value is a text, or one of the given words if there are any."""
+    """Checks that a value is a text that is not empty. If words are given, it must be one of them."""
     allowed = ", ".join(words) if words else "a text"
     if not isinstance(value, str) or not value:
         raise refuse(name, allowed, value)
@@ -155,7 +155,7 @@ def flag(name: str, value: object) -> bool:
 
 
 def path(name: str, value: object) -> str:
-    """Converts the name of a file to a text."""
+    """Converts the name of a file (str or os.PathLike) to a str."""
     if not isinstance(value, (str, os.PathLike)):
         raise refuse(name, "the name of a file", value)
     text = os.fspath(value)
@@ -165,22 +165,23 @@ def path(name: str, value: object) -> str:
 
 
 def thread_count(value: object) -> int:
-    """Returns the number of threads; 0 means one per core."""
+    """Converts the argument `threads`. None becomes 0, which means one thread per core."""
     return 0 if value is None else whole("threads", value, 1, 4096)
 
 
 def former_keywords() -> Mapping[str, str]:
-    """Returns the keywords of former versions and the keywords that replace them."""
+    """Returns a dict from keywords of former versions to the keywords that replace them."""
     from ._fields import FORMER  # imported here, because _fields imports this module
 
     return FORMER
 
 
 def checked(meanings: Mapping[str, str]) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """Decorates a function with keywords.
+    """Returns a decorator for functions with keywords.
 
-    The meanings of its keywords are appended to the docstring. If the function is called with an
-    unknown keyword, the message suggests the most similar keyword."""
+    The meanings of the keywords are appended to the docstring. If the function is called with a
+    former keyword, the current keyword is used and a warning is given. If it is called with an
+    unknown keyword, the error message suggests the most similar keyword."""
 
     def wrap(function: Callable[_P, _R]) -> Callable[_P, _R]:
         keywords = list(inspect.signature(function).parameters)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Design"]
 
 _DEEPEST = 16  # maximum depth of nested lists and dicts
-_IN_MEMORY = "Design(...)"  # replaces the file name in messages of the library
+_IN_MEMORY = "Design(...)"  # file name in messages about designs in memory
 
 
 def _key(name: object) -> str:
@@ -114,9 +114,9 @@ class Design:
         Design.load("honeycomb.toml").replace({"element.aperture_mm": 0.5})
         Design(element={"kind": "rtp", "base_mm": 2}, body={"thickness_mm": 2})
 
-    Keys are those of design files (docs/design_file.md; retrace.files has them as TypedDicts).
-    Relative names of other files refer to the folder of the design file if the design was loaded,
-    and otherwise to the working directory.
+    The keys are those of design files (docs/design_file.md). The module retrace.files contains them
+    as TypedDicts. If a design was loaded from a file, relative names of other files refer to the
+    folder of this file. Otherwise, they refer to the working directory.
     """
 
     __slots__ = ("_core", "_keeps")
@@ -131,7 +131,7 @@ class Design:
 
     @classmethod
     def from_dict(cls, tables: files.Design) -> Design:
-        """Makes a design from a dict. A type checker can then check the keys."""
+        """Makes a design from a dict. Type checkers can check the keys of this dict."""
         if not isinstance(tables, Mapping):
             raise refuse("tables", "a dict of tables", tables)
         for key in tables:
@@ -147,7 +147,7 @@ class Design:
     def parse(
         cls, text: str, source: str = "design", changes: Mapping[str, object] | None = None
     ) -> Design:
-        """Reads the text of a design file. source: name of the file in messages."""
+        """Reads the text of a design file. source: file name that is used in messages."""
         if not isinstance(text, str):
             raise refuse("text", "a text", text)
         return cls._of(
@@ -155,7 +155,7 @@ class Design:
         )
 
     def replace(self, changes: Mapping[str, object]) -> Design:
-        """Returns a copy of the design with some keys changed; the value None unsets a key."""
+        """Returns a copy of the design with changed keys. The value None unsets a key."""
         try:
             return self._of(self._core.replaced(overrides_of(changes)), self._keeps)
         except InputError as error:
@@ -182,7 +182,7 @@ class Design:
 
     @property
     def source(self) -> str:
-        """Name of the design file, or a replacement for it in messages."""
+        """Name of the design file. If there is no file, the text that replaces it in messages."""
         return self._core.source
 
     @property
@@ -197,17 +197,17 @@ class Design:
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings: one for each key that has no effect because another key takes precedence."""
+        """One warning for each key that has no effect because another key takes precedence."""
         return self._core.warnings
 
     @property
     def json(self) -> str:
-        """Keys of the design as JSON, in the form that results contain."""
+        """Keys and values of the design as JSON, in the form that is used in results."""
         return self._core.json()
 
     @property
     def document(self) -> dict[str, Any]:
-        """Keys of the design as a dict."""
+        """Keys and values of the design as a dict."""
         result: dict[str, Any] = json.loads(self.json)
         return result
 
@@ -247,7 +247,7 @@ class Design:
         )
 
     def _repr_svg_(self) -> str | None:
-        """Shows the plan of the design in a notebook."""
+        """Returns the plan of the design as SVG, which notebooks display."""
         try:
             return _core.inspect(self._core).plan.svg() or None
         except (InputError, OSError):
@@ -263,7 +263,7 @@ AnyDesign = Union[Design, PathLike]
 
 
 def design_of(value: object) -> Design:
-    """Returns a design from a design or from the name of its file."""
+    """Returns the given design, or reads it if the name of its file is given."""
     if isinstance(value, Design):
         return value
     if isinstance(value, str) or hasattr(value, "__fspath__"):

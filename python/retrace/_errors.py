@@ -1,4 +1,4 @@
-"""Errors. Each has one line of text."""
+"""Exceptions of retrace. Each message consists of one line."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """An invalid input: a file or an argument. In the latter case, key is the argument."""
+    """Raised for an invalid file or argument. For an argument, `key` is its name."""
 
     def __init__(
         self, message: str, file: str | None = None, line: int | None = None, key: str | None = None
     ) -> None:
-        #: What is wrong and what is allowed, without file and line.
+        #: Description of the error and the allowed values, without file and line.
         self.message = message
-        # The library reports an error in a dict of changes as an error in the file "--set". In
-        # Python there is no such file.
+        # For an error in a dict of changes, the library reports a file name that begins with
+        # "--set ". Python has no such file.
         changed = (file or "").startswith("--set ")
         self.file = None if changed else file or None  #: file that contains the error, or None
         self.line = line or None  #: line of this file, counted from 1
@@ -32,8 +32,8 @@ class InputError(Error, ValueError):
 
 
 class OutputError(Error, OSError):
-    """A file that cannot be written."""
+    """Raised if a file cannot be written."""
 
 
 class BudgetError(Error, RuntimeError):
-    """A limit on time, memory or accuracy was reached before the result was complete."""
+    """Raised if a limit on time, memory or accuracy is reached before the result is complete."""

@@ -20,7 +20,7 @@ from ._results import Columns, Result, html_table, write_file
 
 __all__ = ["Fabrication", "Job", "Verification", "fabricate", "job", "verify"]
 
-_IN_MEMORY = "job.toml"  # replaces the file name of a job that is in memory
+_IN_MEMORY = "job.toml"  # file name of jobs that are in memory
 
 
 class Job(Result):
@@ -89,7 +89,7 @@ class _Folder:
 
 
 class Verification(Result):
-    """Comparison of the surface that NC programs cut with their job."""
+    """Result of a simulation: the surface that NC programs cut, compared with their job."""
 
     _told = ("verdict",)
     _costly = ("map",)
@@ -112,14 +112,15 @@ class Verification(Result):
 
     @property
     def findings(self) -> Columns:
-        """Errors of the programs: kind, program, line, message, value, limit. A program may do
-        something that is not allowed or omit something that is required."""
+        """Errors of the programs, with the columns kind, program, line, message, value and limit.
+        An error is something that is not allowed, or something required that is missing."""
         names = ("kind", "program", "line", "message", "value", "limit")
         return Columns(self.document.get("findings", []), names)
 
     @property
     def as_machined(self) -> Design:
-        """The machined part as a design. After unpickling, the programs are simulated again."""
+        """The machined part as a design. If this result was unpickled, the programs are
+        simulated again."""
         folder = _Folder()
         file = os.path.join(folder.name, "as_machined.toml")
         if self._core is None:
@@ -147,13 +148,13 @@ def job(
     design: AnyDesign,
     **fields: object,  # generated: keywords of the request job
 ) -> Job:
-    """Computes the fabrication job of a design, as `retrace job`."""
+    """Computes the fabrication job of a design, like the command `retrace job`."""
     request = _core.JobRequest()  # generated: sets the fields of the request job
     return Job(_core.make_job(design_of(design)._core, request))
 
 
 def _job_file(value: object) -> tuple[str, str | None]:
-    """Returns the name of a job's file, and its text if the job is in memory."""
+    """Returns the file name of a job, and the text of the job if it is in memory."""
     if isinstance(value, Job):
         return _IN_MEMORY, value.text
     if isinstance(value, str) or hasattr(value, "__fspath__"):
@@ -166,7 +167,7 @@ def fabricate(
     job: AnyJob,
     **fields: object,  # generated: keywords of the request fabrication
 ) -> Fabrication:
-    """Computes the NC programs of a job and their machining time, as `retrace fabricate`."""
+    """Computes the NC programs of a job and their machining time, like the command `retrace fabricate`."""
     name, text = _job_file(job)
     request = _core.FabricationRequest()  # generated: sets the fields of the request fabrication
     request.job_text = text
@@ -202,7 +203,7 @@ def verify(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Verification:
-    """Simulates NC programs and compares the result with their job, as `retrace verify`."""
+    """Simulates NC programs and compares the result with their job, like the command `retrace verify`."""
     name, text = _job_file(job)
     names, texts = _programs(programs)
     if not names:

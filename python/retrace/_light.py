@@ -30,8 +30,8 @@ __all__ = [
 
 
 class RreResult(Result):
-    """Retroreflective efficiency over directions. Arrays have one value per point, in the order of
-    designs, azimuths, incidences and acceptance cones."""
+    """Retroreflective efficiency (RRE) for several directions. Arrays have one value per point. The
+    points are ordered by design, azimuth, incidence and acceptance cone."""
 
     _rows = "points"
     _told = ("title", "rre", "engine")
@@ -78,7 +78,7 @@ class RreResult(Result):
 
     @property
     def far_field(self) -> dict[str, Any] | None:
-        """Document of the directions in which light leaves, or None if not requested."""
+        """Far field as a dict: the directions in which light leaves. None if not requested."""
         return json.loads(self._far_field) if self._far_field else None
 
     def polar(self, design: int = 0, acceptance_half_angle_deg: float | None = None) -> PolarMap:
@@ -105,8 +105,9 @@ class RreResult(Result):
 
     def to_xarray(self) -> Any:
         """Returns an xarray.Dataset over design, azimuth, incidence and acceptance, with units.
-        Values are NaN where a design has no point, because automatically chosen incidences are
-        different for each design. attrs contains the seed and the version."""
+        Values are NaN where a design has no point. This occurs if angles of incidence were chosen
+        automatically, because they differ between designs. attrs contains the seed and the
+        version."""
         dims = ["design", "azimuth_deg", "incidence_deg", "acceptance_half_angle_deg"]
         dataset = dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
         return dataset.sortby("incidence_deg")
@@ -153,7 +154,7 @@ class Footprint(Result):
         self.drawings = {
             name: drawing for name, drawing in rre.drawings.items() if name == "footprint"
         }
-        #: Efficiency (RRE) for the directions of light of this footprint.
+        #: Retroreflective efficiency (RRE) for the incident directions of this footprint.
         self.rre = rre
 
     @property
@@ -174,7 +175,8 @@ class Footprint(Result):
 
     @property
     def holes(self) -> list[list[Array]]:
-        """Holes in each region: (n, 2) arrays of x and y in mm, like the outlines."""
+        """Holes in each region: (n, 2) arrays of x and y in mm. The first point is repeated at
+        the end."""
         return [
             [frozen(ring) for ring in feature["geometry"]["coordinates"][1:]]
             for feature in self._features
@@ -187,7 +189,7 @@ class Footprint(Result):
 
     @property
     def properties(self) -> Columns:
-        """Direction of light and design for each region."""
+        """Direction of the incident light and design, for each region."""
         return Columns([feature["properties"] for feature in self._features])
 
     @property
@@ -212,11 +214,11 @@ def rre(
     progress: Progress = None,
 ) -> RreResult:
     """Computes the retroreflective efficiency (RRE) over angles of incidence and azimuths, with its
-    standard error and a ledger of all other light, as `retrace rre`.
+    standard error and a ledger of all other light, like the command `retrace rre`.
 
     designs: one or more designs or names of their files. incidence_spans_deg: ranges (from, to) in
-    which additional angles of incidence are chosen, as many as the curve requires, for each design
-    on its own. threads: maximum number of threads [all cores]."""
+    which additional angles of incidence are chosen automatically. They are chosen separately for
+    each design, as many as its curve requires. threads: maximum number of threads [all cores]."""
     taken = designs_of(designs)
     request = _core.RreRequest()  # generated: sets the fields of the request rre
     if incidence_deg is not None and len(incidence_spans_deg) == 0:
@@ -237,7 +239,7 @@ def footprint(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Footprint:
-    """Computes the regions of the entrance face that return light, as `retrace rre --footprint`."""
+    """Computes the regions of the entrance face that return light, like the command `retrace rre --footprint`."""
     result = rre(
         design_of(design),
         incidence_deg=incidence_deg,
@@ -379,12 +381,12 @@ def photometry(
     progress: Progress = None,
 ) -> PhotometryResult:
     """Computes the coefficients of retroreflection at the test points of a standard, with limits
-    and a verdict, as `retrace photometry`.
+    and a verdict, like the command `retrace photometry`.
 
     compare: a second design, for maps of both designs and the drawing "map_ratio"; needs map=True.
-    diffraction: False for the geometric far field without diffraction. advice: suggest changes of
-    the design if a point fails. pictures: make the drawings "far_field" and "r_a", which takes
-    time."""
+    diffraction: False for the far field of geometrical optics, without diffraction. advice: True to
+    suggest changes of the design if a point fails. pictures: True to make the drawings "far_field"
+    and "r_a", which takes time."""
     taken = design_of(design)
     compared = None if compare is None else design_of(compare)._core
     request = _core.PhotometryRequest()  # generated: sets the fields of the request photometry

@@ -42,7 +42,7 @@ class FaceKind(enum.IntEnum):
 
 
 class Mesh:
-    """A closed triangle mesh in the part frame: `vertices, faces, labels = mesh`.
+    """A closed triangle mesh in the part frame. To unpack it: `vertices, faces, labels = mesh`.
 
     The arrays use the memory of the library and are read-only."""
 
@@ -93,7 +93,8 @@ class MaterialResult(Result):
 
 
 class Inspection(Result):
-    """Properties of a design that need no ray tracing. Drawings: plan, section, entrance_surface, view."""
+    """Properties of a design that need no ray tracing. The drawings are "plan", "section",
+    "entrance_surface" and "view"."""
 
     _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
 
@@ -117,7 +118,7 @@ def export(
     file: PathLike,
     **fields: object,  # generated: keywords of the request solid
 ) -> ExportResult:
-    """Writes the solid of a design as STL, OBJ, glTF or STEP, as `retrace export`. The ending of
+    """Writes the solid of a design as STL, OBJ, glTF or STEP, like the command `retrace export`. The ending of
     the file name determines the format."""
     request = _core.SolidRequest()  # generated: sets the fields of the request solid
     return ExportResult(_core.export_solid(design_of(design)._core, path("file", file), request))
@@ -132,9 +133,9 @@ def export_material(
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:
-    """Writes a material that reflects light in the same way as a part, for renderers and
-    simulators. `retrace export` does the same. The formats are a table (.json and a .csv file), a
-    BSDF for Radiance (.xml), and lobes in a shader (.glsl)."""
+    """Writes a material that reflects light in the same way as a part, like the command
+    `retrace export`. Renderers and simulators can use the material. The formats are a table (.json
+    and a .csv file), a BSDF for Radiance (.xml), and lobes in a shader (.glsl)."""
     taken = design_of(design)
     request = _core.MaterialRequest()  # generated: sets the fields of the request material
     count = thread_count(threads)
@@ -146,8 +147,8 @@ def export_material(
 
 @described({})
 def inspect(design: AnyDesign) -> Inspection:
-    """Computes properties of a design that need no ray tracing, as `retrace inspect`: counts,
-    areas, limits of total reflection."""
+    """Computes properties of a design that need no ray tracing, like the command `retrace inspect`.
+    Examples are counts, areas and limits of total reflection."""
     core = _core.inspect(design_of(design)._core)
     return Inspection(
         core,

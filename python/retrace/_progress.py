@@ -10,13 +10,13 @@ from typing import Any, Union
 
 from ._errors import InputError
 
-#: None: no progress is shown. True: a progress bar, by tqdm if it is installed. Otherwise a
-#: function, which is called with the completed fraction, 0 to 1.
+#: Display of the progress. None or False: nothing is shown. True: a progress bar is shown, with
+#: tqdm if it is installed. Function: it is called with the completed fraction, 0 to 1.
 Progress = Union[None, bool, Callable[[float], object]]
 
 
 def _line(doing: str) -> Callable[[float], None]:
-    """Shows the progress in one line of a terminal. Without a terminal, nothing is shown."""
+    """Returns a function that shows the progress in one line. Without a terminal, it does nothing."""
 
     def tell(share: float) -> None:
         if sys.stderr.isatty():

@@ -36,7 +36,7 @@ class RayAccount(enum.IntEnum):
 
 
 class RaysResult(Result):
-    """Power of the rays by ledger account. The rays that left are in the requested file."""
+    """Power of the rays by ledger account. Rays that left are in the file `out`, if it was given."""
 
     _told = ("rays", "power", "power_unit")
 
@@ -46,7 +46,7 @@ class RaysResult(Result):
 
 
 class TracedRays(RaysResult):
-    """All rays that left: arrays with one row per ray, in the order of the incident rays."""
+    """All rays that left. Arrays have one row per ray, in the order of the incident rays."""
 
     power_out: Array  #: (m,) power of each ray
     origins: Array  #: (m, 3) points where rays left, in mm in the part frame
@@ -108,8 +108,8 @@ def trace(
 
     origins, directions: (n, 3) arrays in mm in the part frame; directions may have any length
     above 0. stokes: (n, 4) array, or four numbers for all rays; the first number is the power.
-    axes: (n, 3) array, reference axes of the Stokes parameters [+x, projected at right angles to
-    each direction]. wavelength_nm: one number, or one per ray [wavelength of the design]."""
+    axes: (n, 3) array, reference axes of the Stokes parameters [+x, projected onto the plane
+    perpendicular to each direction]. wavelength_nm: one number, or one per ray [wavelength of the design]."""
     taken = design_of(design)
     places = _array("origins", origins, 3)
     ways = _array("directions", directions, 3)
@@ -143,9 +143,10 @@ def rays(
     threads: int | None = None,
     progress: Progress = None,
 ) -> RaysResult:
-    """Traces the rays of a file or an emitter through a part, as `retrace rays`.
+    """Traces the rays of a file or an emitter through a part, like the command `retrace rays`.
 
-    out: file for the rays that leave, .tm25ray or .csv; without it, only the power is summed."""
+    out: file for the rays that leave, .tm25ray or .csv. If no file is given, only
+    the power is summed."""
     taken = design_of(design)
     if (source is None) == (emitter is None):
         raise InputError("one of source and emitter must be given", key="source")

@@ -29,7 +29,7 @@ class Page:
 
 
 def _parts(result: Result, number: int) -> list[tuple[str, Union[str, bytes]]]:
-    """Returns the names and contents of the files that a result would be saved in."""
+    """Returns the names and contents of the files in which a result would be saved."""
     behind = "" if number == 1 else f"_{number}"
     kind = str(result.document.get("schema", "")).removeprefix("retrace.").partition("/")[0]
     parts: list[tuple[str, Union[str, bytes]]] = [(f"{kind}{behind}.json", result.json)]
@@ -49,7 +49,7 @@ def report(
     title: str = "",
     read: Sequence[PathLike] = (),
 ) -> Page:
-    """Makes one self-contained HTML page of results, as `retrace report`. Writes the page if a file
+    """Makes one self-contained HTML page of results, like the command `retrace report`. Writes the page if a file
     is given.
 
     title: title of the page [title of the design]

@@ -1,4 +1,4 @@
-"""Requests: converts the keywords of a function to the fields of a request of the library."""
+"""Converts the keywords of a function to the fields of a request of the library."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Field(NamedTuple):
     meaning: str
 
 
-#: Dictionary from the keywords of a Python function to the fields of the request.
+#: Fields of a request by the keywords of a Python function.
 Fields = dict[str, Field]
 
 
@@ -71,7 +71,7 @@ def with_values(
     """Returns a copy of a request for each value of a list, or only the request if `lists` is None.
 
     name: name of the argument `lists` in messages
-    lists: a dict that contains one keyword, whose field is a number, with a list of its values"""
+    lists: a dict with one item: a keyword whose field is a number, and the list of its values"""
     if lists is None:
         return [request]
     numeric = [keyword for keyword, field in fields.items() if field.kind == "number"]

@@ -1,4 +1,4 @@
-"""Results: documents of the program whose numbers are available as arrays."""
+"""Results of computations: JSON documents of the program, with their numbers as arrays."""
 
 from __future__ import annotations
 
@@ -54,10 +54,10 @@ _FORMER_DRAWINGS = {"front": "entrance_surface"}
 
 @functools.lru_cache(maxsize=None)
 def former_names(kind: str) -> Mapping[str, str]:
-    """Returns the current names of renamed keys as a dict by former paths.
+    """Returns a dict from the former paths of renamed keys to their current names.
 
     kind: kind of the documents; "" for designs. In a path such as "regions[].active_share", only
-    the last name is a former name. The objects that contain the key have their current names."""
+    the last name is a former name. The names before it are current names."""
     names = {}
     for of, former, current in _core.former_names():
         if of == kind and "=" not in current:
@@ -75,7 +75,7 @@ def names_within(names: Mapping[str, str], parent: str) -> Mapping[str, str]:
 
 
 def warn_of_former(former: str, current: str) -> None:
-    """Warns the caller of the calling function that a name has changed."""
+    """Warns that a name has changed. The warning refers to the caller of the calling function."""
     warn(f"{former} is now called {current}", FutureWarning, stacklevel=3)
 
 
@@ -142,8 +142,8 @@ def column_of(values: Sequence[Any], former: Mapping[str, str] | None = None) ->
 
 
 class Columns(Mapping[str, Any]):
-    """Columns of a list of objects with equal keys. Numbers are read-only float64 arrays with NaN
-    for missing values."""
+    """Columns of a list of objects, one for each key. Columns of numbers are read-only float64
+    arrays with NaN for missing values."""
 
     def __init__(
         self,
@@ -153,7 +153,7 @@ class Columns(Mapping[str, Any]):
     ) -> None:
         """names: columns that exist even if there are no rows. former: dict from former
         to current names."""
-        #: Rows of the list, as in the JSON document.
+        #: Objects of the list, as in the JSON document.
         self.rows = rows
         self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
         self._columns: dict[str, Any] = {}
@@ -206,7 +206,7 @@ class Columns(Mapping[str, Any]):
         return html_table(self.rows)
 
     def flat(self, prefix: str = "") -> dict[str, Any]:
-        """Returns all columns. A column of an inner table is named table_key."""
+        """Returns all columns. The column `key` of an inner table `table` is named table_key."""
         flat: dict[str, Any] = {}
         for name in self._names:
             column = self[name]
@@ -257,7 +257,7 @@ def html_table(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 class Drawing:
-    """A drawing of a result. It is made on first use."""
+    """A drawing of a result. It is drawn when it is first used."""
 
     def __init__(self, source: Any) -> None:
         self._source = source
@@ -331,21 +331,22 @@ def write_file(name: str, content: bytes) -> None:
 
 
 class Result:
-    """A result. The keys of its document are attributes. If the document contains a list of
-    objects, such as the points of a curve, their keys are attributes, too. These are read-only
-    arrays with one value per object, and NaN where a key is missing.
+    """Base class of results. The keys of the JSON document are attributes of the result. If the
+    document contains a list of objects, such as the points of a curve, the keys of these objects
+    are also attributes. Such an attribute is a read-only array with one value per object, and NaN
+    where the key is missing.
     """
 
     #: Key of a list of objects in the document. The keys of these objects are also attributes of
     #: the result.
     _rows: ClassVar[str] = ""
-    #: Drawings that take long to make: pages contain them only if they were made before.
+    #: Drawings that take long to make. Pages contain them only if they were made before.
     _costly: ClassVar[Sequence[str]] = ()
     #: Keys that the one-line description contains.
     _told: ClassVar[Sequence[str]] = ()
 
-    json: str  #: the document, as the program prints it with --json
-    table: str  #: table for reading, as the program prints it
+    json: str  #: JSON document, as the program prints it with --json
+    table: str  #: text table, as the program prints it
     warnings: tuple[str, ...]  #: limitations of the result
     csv: str  #: one line per point; empty if there are no points
     drawings: dict[str, Drawing]  #: by name
@@ -369,7 +370,7 @@ class Result:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The document as a dict."""
+        """The JSON document as a dict."""
         document: dict[str, Any] | None = self.__dict__.get("_document")
         if document is None:
             document = self.__dict__["_document"] = json.loads(self.json)
@@ -442,7 +443,7 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     def save(self, file: PathLike) -> None:
-        """Writes the document."""
+        """Writes the JSON document."""
         write_file(path("file", file), self.json.encode())
 
     def to_pandas(self) -> Any:
@@ -462,7 +463,7 @@ class Result:
         }
 
     def _summary(self) -> str:
-        """Returns the parts of the one-line description."""
+        """Returns the keys and values of the one-line description."""
         parts = []
         for name in self._told:
             value = getattr(self, name, None)
@@ -500,8 +501,8 @@ def dataset_of(
     attributes: Mapping[str, Any],
     exclude: Callable[[str], bool] = lambda name: False,
 ) -> Any:
-    """Returns an xarray.Dataset over the values of some columns. A dimension with a single value is
-    kept as a coordinate of length 1."""
+    """Returns an xarray.Dataset. Its dimensions are the columns `dims`, and its coordinates are the
+    distinct values of these columns. A dimension with a single value is kept."""
     xarray = needed("xarray", "to_xarray()")
     flat = columns.flat()
     coordinates = {dim: list(dict.fromkeys(np.asarray(flat[dim]).tolist())) for dim in dims}

@@ -17,7 +17,7 @@ from ._results import Columns, html_table
 
 
 def number_of(name: str, value: object) -> float:
-    """Checks the value that a function of a result returned."""
+    """Checks that a value returned by a function of a result is one number."""
     array = np.asarray(value)
     if array.size != 1 or array.dtype.kind not in "iufb":
         raise InputError(f"must return one number, but returned {shown(value)}", key=name)

@@ -45,7 +45,7 @@ __all__ = [
 #: Quantity that is computed for each design: its kind, a table [[quantity]] of a study file, or a
 #: function of a result.
 Quantity = Union[str, Mapping[str, Any], Callable[[Any], Any]]
-#: Values, or keys of a table [[parameter]] such as {"from": 0.1, "to": 5}.
+#: Values of a parameter, or a dict with keys of a table [[parameter]], such as {"from": 0.1, "to": 5}.
 Values = Any
 
 _MOST_SEED = 2**32 - 1
@@ -125,7 +125,7 @@ class Optimum(Result):
 
     @property
     def best_design(self) -> Design:
-        """The original design with the keys of the best design."""
+        """The best design: the original design with the best values of the varied keys."""
         if self.design is None or not self.is_feasible:
             raise InputError(
                 "exists only if the study has a design and a feasible design was found",
@@ -207,7 +207,7 @@ def _constraints(constraints: object) -> list[dict[str, Any]]:
 
 
 def _settings(**tables: object) -> dict[str, Any]:
-    """Returns the tables of a study that were given."""
+    """Returns the tables of a study that are not None."""
     given: dict[str, Any] = {}
     for name, table in tables.items():
         if table is None:
@@ -221,7 +221,7 @@ def _settings(**tables: object) -> dict[str, Any]:
 def _study_of(
     design: Design, parameters: object, quantities: list[dict[str, Any]], tables: Mapping[str, Any]
 ) -> tuple[_core.Study, list[str]]:
-    """Returns a study of a design in memory, and the changes of the design."""
+    """Returns a study of a design in memory, and the overrides of keys that are not varied."""
     if not isinstance(parameters, Mapping) or not parameters:
         raise refuse("parameters", f"a dict such as {_KEY}", parameters)
     rows = [_parameter(key, values) for key, values in parameters.items()]
@@ -288,7 +288,7 @@ def _with_functions(
     of: Callable[[Design], Any],
     tell: Any,
 ) -> None:
-    """Adds the values of functions of the result to each point."""
+    """Evaluates functions of the result at each point and adds their values to the point."""
     for k, point in enumerate(points):
         if point["status"] == "done":
             try:
@@ -305,7 +305,7 @@ def _with_functions(
 
 
 def _swept(study: Any, seed: int) -> dict[str, Any]:
-    """Returns the document of a sweep whose quantities are all Python functions."""
+    """Returns the document, without points, of a sweep with only Python functions as quantities."""
     return {
         "schema": "retrace.sweep/1",
         "study": "study",
@@ -337,7 +337,7 @@ def sweep(
     threads: int | None = None,
     progress: Progress = None,
 ) -> SweepResult:
-    """Runs a parameter sweep, as `retrace sweep`. The sweep is given by a study file, or by a
+    """Runs a parameter sweep, like the command `retrace sweep`. The sweep is given by a study file, or by a
     design and parameters.
 
         sweep("study.toml", store="s.sqlite", resume=True)
@@ -346,11 +346,11 @@ def sweep(
               of=lambda d: rre(d, incidence_deg=[0, 10, 20]))
 
     quantities: kinds of [[quantity]] as in a study file, tables [[quantity]], or functions of a
-    result. of: function that computes the result for these functions from a design [rre at normal
+    result. of: function of a design that computes the result for these functions [rre at normal
     incidence]. combine: grid, zip, sobol, latin_hypercube or monte_carlo, as in [sweep] of a study
-    file. samples: number of points for the last three. analysis, machining: tables of these names
-    in a study file. changes: values that replace keys of the design and of these tables, for study
-    files. store: SQLite file for finished points."""
+    file. samples: number of points for sobol, latin_hypercube and monte_carlo. analysis, machining:
+    tables of these names in a study file. changes: only for study files; values that replace keys
+    of the design and of these tables. store: SQLite file for finished points."""
     count = thread_count(threads)
     if _from_file(study, parameters):
         request = _request(overrides_of(changes or {}), seed, store, resume, overwrite)
@@ -404,7 +404,7 @@ def sweep(
 
 
 def _text_table(columns: Columns) -> str:
-    """Returns the points as a table for reading."""
+    """Returns the points as a text table."""
     names = [name for name in columns if name not in ("point", "status")]
     rows = [names] + [
         [
@@ -437,14 +437,14 @@ def tolerance(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ToleranceResult:
-    """Computes the effect of manufacturing tolerances on a design, as `retrace tolerance`, from a
-    study file or from a design and the distributions of its keys.
+    """Computes the effect of manufacturing tolerances on a design, like the command
+    `retrace tolerance`. The input is a study file, or a design and the distributions of its keys.
 
         tolerance(design, {"surface.dihedral_error_arcmin": {"distribution": "normal", "mean": 0,
         "sigma": 3}},
                   constraints={"rre": (0.96, None)})
 
-    constraints: minimum and maximum of quantities for a good part. tolerance, analysis, machining:
+    constraints: minimum and maximum of each quantity for a good part. tolerance, analysis, machining:
     tables of these names in a study file. Other arguments are those of sweep()."""
     count = thread_count(threads)
     if _from_file(study, parameters):
@@ -491,8 +491,8 @@ def optimize(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Union[Optimum, FoundOptimum]:
-    """Finds the best design within constraints, as `retrace optimize`, from a study file or from a
-    design and parameters.
+    """Finds the best design within constraints, like the command `retrace optimize`. The input is a
+    study file, or a design and parameters.
 
         optimize("study.toml")
         optimize(design, {"element.base_mm": {"from": 0.1, "to": 5}},
@@ -503,7 +503,7 @@ def optimize(
     objective: a quantity of retrace, or a function of a result. With a function, parameters must be
     pairs (minimum, maximum). The search then starts at the best of `scan` designs and uses at most
     `evaluations` designs (Nelder-Mead of scipy, or a compass search without scipy). of: function
-    that computes the result for this function. quantities: additional quantities to compute.
+    of a design that computes the result for the objective. quantities: additional quantities to compute.
     optimize, analysis, machining: tables of these names in a study file. Other arguments are those
     of sweep() and tolerance()."""
     count = thread_count(threads)

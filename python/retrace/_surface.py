@@ -1,4 +1,4 @@
-"""Measured surfaces."""
+"""Evaluation of measured surfaces."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class MetrologyResult(Result):
     surface: dict[str, float]  #: keys of the table [surface] of a design with this surface
     surface_toml: str  #: table [surface] as text of a design file
     spectra_csv: str  #: power spectral densities
-    heights_nm: Array  #: heights without the form
+    heights_nm: Array  #: heights after removal of the form
     roughness_nm: Array
     waviness_nm: Array
     pixel_um: tuple[float, float]  #: spacing along x and y
@@ -72,7 +72,7 @@ def metrology(
     **fields: object,  # generated: keywords of the request metrology
 ) -> MetrologyResult:
     """Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height
-    map or profile, as `retrace metrology`.
+    map or profile, like the command `retrace metrology`.
 
     heights: file (text, SDF, GSF or GWY), or an array of heights in nm, positive out of the
     material, NaN where nothing was measured. pixel_um: required for arrays; one number, or two for

@@ -88,7 +88,7 @@ def detector(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes maps of the returned light by position ("irradiance") and by direction ("angular"),
-    as `retrace image --detector`."""
+    like the command `retrace image --detector`."""
     request = _core.DetectorRequest()  # generated: sets the fields of the request detector
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:
@@ -104,8 +104,8 @@ def camera(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a camera picture of the part in the light of a lamp ("camera": luminance Y in
-    cd/m2), as `retrace image --camera`. A coloured part also has the tristimulus values X and Z,
-    and the linear sRGB values R, G and B with the lamp as white, all in cd/m2.
+    cd/m2), like the command `retrace image --camera`. If the part is coloured, the picture also contains the
+    tristimulus values X and Z, and the linear sRGB values R, G and B with the lamp as white, all in cd/m2.
 
     eye_mm, lamp_mm: positions, three numbers each. film_mm: two numbers. lamp: a photometric
     file. exposure_ev, tone, background: only for the drawing."""
@@ -124,13 +124,14 @@ def camera_series(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Computes several camera pictures with the same exposure, as `retrace image --camera` with
+    """Computes several camera pictures with the same exposure, like the command `retrace image --camera` with
     several designs or a list. The pictures are "camera_01", "camera_02" and so on. The drawing
     "sheet" shows all of them.
 
-    designs: one design, or a list with one design for each picture. values: a dict such as
-    {"observation_deg": [0.2, 0.5]}, with one keyword of camera() whose value is a number, and its
-    values, one for each picture; only for one design. All other keywords are those of camera()."""
+    designs: one design, or a list with one design for each picture. values: only for one
+    design; a dict with one keyword of camera() and a list of its values, such as
+    {"observation_deg": [0.2, 0.5]}. The keyword must be a number. There is one picture for each
+    value. All other keywords are those of camera()."""
     request = _core.CameraRequest()  # generated: sets the fields of the request camera
     taken, count = designs_of(designs), thread_count(threads)
     requests = with_values(request, FIELDS["camera"], "values", values)
@@ -149,7 +150,7 @@ def road(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a driver's view at night of a car ahead with two reflectors of the design, or of a
-    sign, as `retrace image --road`. The picture "road" has the luminance Y, its parts `reflected`
+    sign, like the command `retrace image --road`. The picture "road" has the luminance Y, its components `reflected`
     (directly from the reflectors) and `veil` (scattered in the eye), and the linear sRGB values R,
     G and B with the lamp as white, all in cd/m2.
 
