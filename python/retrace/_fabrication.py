@@ -167,7 +167,8 @@ def fabricate(
     job: AnyJob,
     **fields: object,  # generated: keywords of the request fabrication
 ) -> Fabrication:
-    """Computes the NC programs of a job and their machining time, like the command `retrace fabricate`."""
+    """Computes the NC programs of a job and their machining time, like the command `retrace
+    fabricate`."""
     name, text = _job_file(job)
     request = _core.FabricationRequest()  # generated: sets the fields of the request fabrication
     request.job_text = text
@@ -203,7 +204,8 @@ def verify(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Verification:
-    """Simulates NC programs and compares the result with their job, like the command `retrace verify`."""
+    """Simulates NC programs and compares the result with their job, like the command `retrace
+    verify`."""
     name, text = _job_file(job)
     names, texts = _programs(programs)
     if not names:

@@ -239,7 +239,8 @@ def footprint(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Footprint:
-    """Computes the regions of the entrance face that return light, like the command `retrace rre --footprint`."""
+    """Computes the regions of the entrance face that return light, like the command `retrace rre
+    --footprint`."""
     result = rre(
         design_of(design),
         incidence_deg=incidence_deg,

@@ -118,8 +118,8 @@ def export(
     file: PathLike,
     **fields: object,  # generated: keywords of the request solid
 ) -> ExportResult:
-    """Writes the solid of a design as STL, OBJ, glTF or STEP, like the command `retrace export`. The ending of
-    the file name determines the format."""
+    """Writes the solid of a design as STL, OBJ, glTF or STEP, like the command `retrace export`.
+    The ending of the file name determines the format."""
     request = _core.SolidRequest()  # generated: sets the fields of the request solid
     return ExportResult(_core.export_solid(design_of(design)._core, path("file", file), request))
 

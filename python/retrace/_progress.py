@@ -16,7 +16,8 @@ Progress = Union[None, bool, Callable[[float], object]]
 
 
 def _line(doing: str) -> Callable[[float], None]:
-    """Returns a function that shows the progress in one line. Without a terminal, it does nothing."""
+    """Returns a function that shows the progress in one line. Without a terminal, it does
+    nothing."""
 
     def tell(share: float) -> None:
         if sys.stderr.isatty():

@@ -36,7 +36,8 @@ class RayAccount(enum.IntEnum):
 
 
 class RaysResult(Result):
-    """Power of the rays by ledger account. Rays that left are in the file `out`, if it was given."""
+    """Power of the rays by ledger account. Rays that left are in the file `out`, if it was
+    given."""
 
     _told = ("rays", "power", "power_unit")
 
@@ -109,7 +110,8 @@ def trace(
     origins, directions: (n, 3) arrays in mm in the part frame; directions may have any length
     above 0. stokes: (n, 4) array, or four numbers for all rays; the first number is the power.
     axes: (n, 3) array, reference axes of the Stokes parameters [+x, projected onto the plane
-    perpendicular to each direction]. wavelength_nm: one number, or one per ray [wavelength of the design]."""
+    perpendicular to each direction]. wavelength_nm: one number, or one per ray [wavelength of the
+    design]."""
     taken = design_of(design)
     places = _array("origins", origins, 3)
     ways = _array("directions", directions, 3)

@@ -49,8 +49,8 @@ def report(
     title: str = "",
     read: Sequence[PathLike] = (),
 ) -> Page:
-    """Makes one self-contained HTML page of results, like the command `retrace report`. Writes the page if a file
-    is given.
+    """Makes one self-contained HTML page of results, like the command `retrace report`. Writes the
+    page if a file is given.
 
     title: title of the page [title of the design]
     read: files and folders that may be read, such as the mesh of a design; other files are not

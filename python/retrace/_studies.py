@@ -45,7 +45,8 @@ __all__ = [
 #: Quantity that is computed for each design: its kind, a table [[quantity]] of a study file, or a
 #: function of a result.
 Quantity = Union[str, Mapping[str, Any], Callable[[Any], Any]]
-#: Values of a parameter, or a dict with keys of a table [[parameter]], such as {"from": 0.1, "to": 5}.
+#: Values of a parameter, or a dict with keys of a table [[parameter]], such as {"from": 0.1, "to":
+#: 5}.
 Values = Any
 
 _MOST_SEED = 2**32 - 1
@@ -337,8 +338,8 @@ def sweep(
     threads: int | None = None,
     progress: Progress = None,
 ) -> SweepResult:
-    """Runs a parameter sweep, like the command `retrace sweep`. The sweep is given by a study file, or by a
-    design and parameters.
+    """Runs a parameter sweep, like the command `retrace sweep`. The sweep is given by a study file,
+    or by a design and parameters.
 
         sweep("study.toml", store="s.sqlite", resume=True)
         sweep(design, {"element.base_mm": [0.5, 1, 2]}, quantities=["rre", "machining_time_h"])
@@ -444,8 +445,8 @@ def tolerance(
         "sigma": 3}},
                   constraints={"rre": (0.96, None)})
 
-    constraints: minimum and maximum of each quantity for a good part. tolerance, analysis, machining:
-    tables of these names in a study file. Other arguments are those of sweep()."""
+    constraints: minimum and maximum of each quantity for a good part. tolerance, analysis,
+    machining: tables of these names in a study file. Other arguments are those of sweep()."""
     count = thread_count(threads)
     if _from_file(study, parameters):
         read, given = _core.Study.load(path("study", study)), overrides_of(changes or {})
@@ -503,9 +504,9 @@ def optimize(
     objective: a quantity of retrace, or a function of a result. With a function, parameters must be
     pairs (minimum, maximum). The search then starts at the best of `scan` designs and uses at most
     `evaluations` designs (Nelder-Mead of scipy, or a compass search without scipy). of: function
-    of a design that computes the result for the objective. quantities: additional quantities to compute.
-    optimize, analysis, machining: tables of these names in a study file. Other arguments are those
-    of sweep() and tolerance()."""
+    of a design that computes the result for the objective. quantities: additional quantities to
+    compute. optimize, analysis, machining: tables of these names in a study file. Other arguments
+    are those of sweep() and tolerance()."""
     count = thread_count(threads)
     flag("minimize", minimize)
     if _from_file(study, parameters):

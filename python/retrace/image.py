@@ -104,8 +104,9 @@ def camera(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a camera picture of the part in the light of a lamp ("camera": luminance Y in
-    cd/m2), like the command `retrace image --camera`. If the part is coloured, the picture also contains the
-    tristimulus values X and Z, and the linear sRGB values R, G and B with the lamp as white, all in cd/m2.
+    cd/m2), like the command `retrace image --camera`. If the part is coloured, the picture also
+    contains the tristimulus values X and Z, and the linear sRGB values R, G and B with the lamp as
+    white, all in cd/m2.
 
     eye_mm, lamp_mm: positions, three numbers each. film_mm: two numbers. lamp: a photometric
     file. exposure_ev, tone, background: only for the drawing."""
@@ -124,9 +125,9 @@ def camera_series(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Computes several camera pictures with the same exposure, like the command `retrace image --camera` with
-    several designs or a list. The pictures are "camera_01", "camera_02" and so on. The drawing
-    "sheet" shows all of them.
+    """Computes several camera pictures with the same exposure, like the command `retrace image
+    --camera` with several designs or a list. The pictures are "camera_01", "camera_02" and so on.
+    The drawing "sheet" shows all of them.
 
     designs: one design, or a list with one design for each picture. values: only for one
     design; a dict with one keyword of camera() and a list of its values, such as
@@ -150,9 +151,9 @@ def road(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a driver's view at night of a car ahead with two reflectors of the design, or of a
-    sign, like the command `retrace image --road`. The picture "road" has the luminance Y, its components `reflected`
-    (directly from the reflectors) and `veil` (scattered in the eye), and the linear sRGB values R,
-    G and B with the lamp as white, all in cd/m2.
+    sign, like the command `retrace image --road`. The picture "road" has the luminance Y, its
+    components `reflected` (directly from the reflectors) and `veil` (scattered in the eye), and the
+    linear sRGB values R, G and B with the lamp as white, all in cd/m2.
 
     reflector_mm, pixels: two numbers each. lamp: a photometric file. exposure_ev, tone: only for
     the drawing."""
