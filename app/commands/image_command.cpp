@@ -250,8 +250,11 @@ ExitCode photograph_series(const ImageOptions& options, const CommonOptions& com
   for (std::size_t k = 0; k < series.size(); ++k) {
     const std::string name = fmt::format("camera_{:02}", k + 1);
     const auto add = [&](const char* extension, auto content) {
-      files.add(name + extension,
-                [&result, k, content] { return k < result.pictures.size() ? content(result.pictures[k]) : ""; });
+      files.add(name + extension, [&result, k, content] {
+        const auto place = std::ranges::find(result.positions, k);
+        if (place == result.positions.end()) return std::string();
+        return content(result.pictures[static_cast<std::size_t>(place - result.positions.begin())]);
+      });
     };
     add(".exr", [](const auto& picture) { return report::exr_file(report::luminance_picture(picture)); });
     add(".png", [tone](const auto& picture) { return report::camera_png(picture, tone()); });

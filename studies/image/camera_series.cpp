@@ -76,17 +76,20 @@ CameraSeriesResult CameraSeries::run(Progress* progress, const Cancellation* can
                                      const DistributeTasks& distribute) const {
   CameraSeriesResult series;
   const auto count = static_cast<double>(size());
+  const auto add = [&series](std::size_t position, CameraResult result) {
+    series.pictures.push_back(std::move(result));
+    series.positions.push_back(position);
+  };
   if (distribute) {
     PictureLedger ledger(size(), progress);
     distribute(pictures(), ledger);
     for (std::size_t k = 0; k < size(); ++k)
-      if (const std::string& bytes = ledger.finished()[k]; !bytes.empty())
-        series.pictures.push_back(studies_[k]->result_of(bytes));
+      if (const std::string& bytes = ledger.finished()[k]; !bytes.empty()) add(k, studies_[k]->result_of(bytes));
   } else {
     for (std::size_t k = 0; k < size() && !is_cancelled(cancel); ++k) {
       PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
       CameraResult result = studies_[k]->run(&part, cancel);
-      if (result.image.passes > 0) series.pictures.push_back(std::move(result));
+      if (result.image.passes > 0) add(k, std::move(result));
     }
   }
   for (const CameraResult& picture : series.pictures)

@@ -15,6 +15,7 @@ namespace retrace::studies {
 
 struct CameraSeriesResult {
   std::vector<CameraResult> pictures;  ///< in the order of the request, without pictures that have no finished pass
+  std::vector<std::size_t> positions;  ///< position of each picture in the request, counted from 0
   Warnings warnings;                   ///< warnings of all pictures
   bool complete = true;                ///< true if all requested pictures are complete
 };

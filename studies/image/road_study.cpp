@@ -132,9 +132,9 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   const double fraction = end / static_cast<double>(request_.distance_m.size());
   double brightest = 0.0;
   PhotometerSetting brightest_setting;
-  PhotometrySettings photometry;
+  PhotometrySettings brightest_photometry;
   for (const double distance_m : request_.distance_m) {
-    photometry = photometry_at(scene_, distance_m, request_.seed);
+    PhotometrySettings photometry = photometry_at(scene_, distance_m, request_.seed);
     photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
     photometry.dye = scene_.dye;
     Photometer photometer(design_, photometry, kSpansOfRoad);
@@ -156,6 +156,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       if ((*readings)[k].r_a.front() > brightest) {
         brightest = (*readings)[k].r_a.front();
         brightest_setting = settings[k];
+        brightest_photometry = photometry;
       }
     result.views.push_back(std::move(view));
     result.engine = photometer.engine_name();
@@ -163,7 +164,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   }
   if (is_coloured && brightest > 0.0 && !is_cancelled(cancel)) {
     PartProgress part(progress, end, 1.0);
-    const auto tint = tint_of(design_, photometry, brightest_setting, &part, cancel);
+    const auto tint = tint_of(design_, brightest_photometry, brightest_setting, &part, cancel);
     if (tint) result.scene.tint = *tint;
     result.complete = result.complete && tint;
   }
