@@ -453,8 +453,8 @@ class InstalledLibrary : public ::testing::Test {
 
 TEST_F(InstalledLibrary, TheExampleBuildsAgainstItAndRuns) {
   const fs::path build = folder_.path() / "build";
-  output_of({RETRACE_CMAKE, "-S", (kSource / "examples/library").string(), "-B", build.string(),
-             "-DCMAKE_PREFIX_PATH=" + prefix().string()});
+  output_of({RETRACE_CMAKE, "-G", RETRACE_GENERATOR, "-S", (kSource / "examples/library").string(), "-B",
+             build.string(), "-DCMAKE_PREFIX_PATH=" + prefix().string()});
   output_of({RETRACE_CMAKE, "--build", build.string()});
   const std::string design = (prefix() / "share/doc/retrace/examples/rtp_single_0p45mm.toml").string();
   const std::string printed = output_of({(build / "curve").string(), design});

@@ -4,5 +4,6 @@ retrace_test(library_tests
   LIBRARIES retrace::retrace nlohmann_json::nlohmann_json)
 target_compile_definitions(library_tests PRIVATE RETRACE_BUILD_DIR="${PROJECT_BINARY_DIR}"
                                                  RETRACE_LIBRARY="$<TARGET_FILE:retrace_shared>"
-                                                 RETRACE_CMAKE="${CMAKE_COMMAND}" RETRACE_NM="${CMAKE_NM}")
+                                                 RETRACE_CMAKE="${CMAKE_COMMAND}"
+                                                 RETRACE_GENERATOR="${CMAKE_GENERATOR}" RETRACE_NM="${CMAKE_NM}")
 add_dependencies(library_tests retrace)
