@@ -88,8 +88,26 @@ std::optional<GlassCatalogueFile> with_absolute_path(const std::optional<GlassCa
   return GlassCatalogueFile{file.string(), file};
 }
 
+std::string CurvedEntrance::name() const {
+  return file() != nullptr ? file()->name : std::string(geometry::kEntranceKinds[form()->shape.index()]);
+}
+
+namespace {
+
+/// Returns the key that determines the shape of an entrance face.
+std::string_view shape_key_of(const EntranceForm& form) {
+  return std::visit(Overloaded{[](const geometry::PlaneEntrance&) { return "entrance_surface.kind"; },
+                               [](const geometry::BiconicEntrance&) { return "entrance_surface.radii_mm"; },
+                               [](const geometry::FormulaEntrance&) { return "entrance_surface.formula"; },
+                               [](const auto&) { return "entrance_surface.radius_mm"; }},
+                    form.shape);
+}
+
+}  // namespace
+
 std::string_view Design::entrance_key() const {
-  return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+  if (entrance && entrance->form() != nullptr) return shape_key_of(*entrance->form());
+  return entrance && entrance->is_mesh() ? "entrance_surface.mesh" : "entrance_surface.turned_part";
 }
 
 const ArrayMask* Design::mask() const {

@@ -18,6 +18,7 @@
 #include "core/warning.h"
 #include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
+#include "geometry/entrance/entrance_shape.h"
 #include "geometry/io/dxf_outline.h"
 #include "geometry/part/zones.h"
 #include "raytrace/balls/ball_layer.h"
@@ -197,7 +198,7 @@ struct ZonedPart {
 /// Shape that a design describes.
 using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::BallLayer>;
 
-/// File with a curved entrance face. It replaces the plane entrance face.
+/// File with a curved entrance face.
 struct EntranceFile {
   std::string name;  ///< name of the file, as given
   /// Path of the file, relative to the working directory; entrance_of_design() reads the file.
@@ -206,8 +207,27 @@ struct EntranceFile {
   /// True if the mesh is a counterpart that is located above the entrance face. The entrance face then consists of the
   /// triangles of the mesh that face downward.
   bool mesh_bottom = false;
-  /// Position of the origin of the file's frame (x and y), in the part frame. Default: the centre of the part.
+};
+
+/// Curved entrance face that keys of the design describe.
+struct EntranceForm {
+  geometry::EntranceShape shape;
+  double rotation_deg = 0.0;  ///< rotation about the axis of the face, before the face is inclined
+};
+
+/// Curved entrance face. It replaces the plane entrance face.
+struct CurvedEntrance {
+  std::variant<EntranceForm, EntranceFile> surface;
+  /// Position of the origin of the surface's frame (x and y), in the part frame. Default: the centre of the part.
   std::optional<std::array<double, 2>> centre_mm;
+
+  /// Returns the description of the face, or null if the face is given by a file.
+  const EntranceForm* form() const { return std::get_if<EntranceForm>(&surface); }
+  /// Returns the file of the face, or null if keys of the design describe the face.
+  const EntranceFile* file() const { return std::get_if<EntranceFile>(&surface); }
+  bool is_mesh() const { return file() != nullptr && file()->is_mesh; }
+  /// Returns the name of the file as given, or the kind of the surface.
+  std::string name() const;
 };
 
 /// Glass catalogue.
@@ -331,7 +351,7 @@ struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if no title was given
   Shape shape;
-  std::optional<EntranceFile> entrance;  ///< curved entrance face; empty for plane faces, balls and infinite arrays
+  std::optional<CurvedEntrance> entrance;  ///< curved entrance face; empty for plane faces, balls and infinite arrays
   Substance substance;
   std::optional<WetElements> wet_back;
   Surface surface;
@@ -355,6 +375,7 @@ struct Design {
   /// Returns the position of the key that makes the facets differ from smooth planes. This is the key of the texture
   /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
+  /// Returns the key that determines the curved entrance face.
   std::string_view entrance_key() const;
 
   // Each of these functions returns the shape, or null if the shape is of another kind.

@@ -9,6 +9,7 @@
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "design/file_names.h"
+#include "geometry/direction.h"
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/io/surface_tables.h"
@@ -75,11 +76,29 @@ geometry::Entrance mesh_entrance(const EntranceFile& file, double scale, const g
   });
 }
 
-Vec3 origin_of(const EntranceFile& file, const geometry::Part& part) {
+geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Part& part, const Vec3& origin_mm) {
+  const geometry::SurfacePose pose{origin_mm,
+                                   geometry::rotation_about(Vec3::UnitZ(), Angle::from_deg(form.rotation_deg))};
+  auto surface = std::make_shared<const geometry::EntranceSurface>(
+      geometry::FreeformSurface(geometry::height_of(form.shape), std::nullopt, {}, {}), pose);
+  geometry::check_folds(*surface, part.outline);
+  return surface;
+}
+
+Vec3 origin_of(const CurvedEntrance& entrance, const geometry::Part& part) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   Vec2 centre = 0.5 * (box.lower + box.upper);
-  if (file.centre_mm) centre = {(*file.centre_mm)[0], (*file.centre_mm)[1]};
+  if (entrance.centre_mm) centre = {(*entrance.centre_mm)[0], (*entrance.centre_mm)[1]};
   return {centre.x(), centre.y(), part.thickness_mm};
+}
+
+geometry::Entrance placed_entrance(const Design& design, const geometry::Part& part) {
+  const CurvedEntrance& entrance = *design.entrance;
+  const Vec3 origin_mm = origin_of(entrance, part);
+  if (entrance.form() != nullptr) return formed_entrance(*entrance.form(), part, origin_mm);
+  const EntranceFile& file = *entrance.file();
+  return file.is_mesh ? mesh_entrance(file, mesh_scale(design, "entrance_surface"), part, origin_mm)
+                      : turned_entrance(file, part, origin_mm);
 }
 
 /// Checks that the entrance face is above the highest point of the back.
@@ -101,13 +120,10 @@ void check_room(const geometry::Entrance& entrance, const geometry::Part& part, 
 }  // namespace
 
 geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part) {
-  const EntranceFile& file = *design.entrance;
+  const EntranceFile* const file = design.entrance->file();
   return read_named(design.where(design.entrance_key()), [&] {
-    const Vec3 origin_mm = origin_of(file, part);
-    const geometry::Entrance entrance =
-        file.is_mesh ? mesh_entrance(file, mesh_scale(design, "entrance_surface"), part, origin_mm)
-                     : turned_entrance(file, part, origin_mm);
-    check_room(entrance, part, file.file.string());
+    const geometry::Entrance entrance = placed_entrance(design, part);
+    check_room(entrance, part, file != nullptr ? file->file.string() : std::string());
     return entrance;
   });
 }

@@ -234,14 +234,37 @@ void set_shape(Document& document, const Design& design) {
              design.shape);
 }
 
+void set_entrance_form(Keys& keys, const EntranceForm& form) {
+  keys.set_choice("kind", form.shape.index());
+  std::visit(
+      Overloaded{[](const geometry::PlaneEntrance&) {},
+                 [&](const geometry::BiconicEntrance& biconic) {
+                   keys.set("radii_mm", list_of(biconic.radii_mm));
+                   keys.set("conics", list_of(biconic.conics));
+                 },
+                 [&](const geometry::FormulaEntrance& formula) { keys.set_word("formula", formula.height_mm->text); },
+                 [&](const auto& conical) {
+                   keys.set("radius_mm", conical.radius_mm);
+                   keys.set("conic", conical.conic);
+                 }},
+      form.shape);
+  keys.set("rotation_deg", form.rotation_deg);
+}
+
+void set_entrance_file(Keys& keys, const Design& design, const EntranceFile& file) {
+  keys.set_word(file.is_mesh ? "mesh" : "turned_part", file.name);
+  if (!file.is_mesh) return;
+  keys.set("scale", mesh_scale(design, "entrance_surface"));
+  keys.set_choice("mesh_side", file.mesh_bottom);
+}
+
 void set_entrance(Document& document, const Design& design) {
-  const EntranceFile& entrance = *design.entrance;
+  const CurvedEntrance& entrance = *design.entrance;
   Keys keys(document, "entrance_surface");
-  keys.set_word(entrance.is_mesh ? "mesh" : "turned_part", entrance.name);
-  if (entrance.is_mesh) {
-    keys.set("scale", mesh_scale(design, "entrance_surface"));
-    keys.set_choice("mesh_side", entrance.mesh_bottom);
-  }
+  if (entrance.form() != nullptr)
+    set_entrance_form(keys, *entrance.form());
+  else
+    set_entrance_file(keys, design, *entrance.file());
   if (entrance.centre_mm) keys.set("centre_mm", list_of(*entrance.centre_mm));
 }
 

@@ -14,6 +14,7 @@
 #include "core/sin_cos.h"
 #include "design/io/design_document.h"
 #include "design/io/design_format.h"
+#include "design/io/entrance_reader.h"
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"
@@ -194,19 +195,6 @@ std::vector<double> read_acceptance(const Document& document) {
   std::sort(angles_deg.begin(), angles_deg.end());
   angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
   return angles_deg;
-}
-
-/// Reads the curved entrance face. Returns nothing if the document has no table [entrance_surface].
-std::optional<EntranceFile> read_entrance(const Document& document) {
-  if (!document.has("entrance_surface")) return std::nullopt;
-  EntranceFile entrance;
-  entrance.is_mesh = document.has("entrance_surface.mesh");
-  const std::string_view key = entrance.is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
-  entrance.file = document.file(key);
-  entrance.name = document.text(key);
-  entrance.mesh_bottom = entrance.is_mesh && document.text("entrance_surface.mesh_side") == "bottom";
-  if (document.has("entrance_surface.centre_mm")) entrance.centre_mm = pair_of(document, "entrance_surface.centre_mm");
-  return entrance;
 }
 
 /// Reads the glass catalogue that contains the material. Returns nothing if the document has no such key.

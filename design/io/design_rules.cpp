@@ -329,13 +329,23 @@ void check_bowl(const Document& document) {
                               fixed_apart(most_deg, *given_deg, 6), shortest(*given_deg)));
 }
 
+/// Checks that the radii of an entrance surface are not 0.
+void check_entrance_radii(const Document& document) {
+  for (const std::string_view key : {"entrance_surface.radius_mm", "entrance_surface.radii_mm"})
+    if (document.has(key) && std::ranges::count(document.numbers(key), 0.0) > 0)
+      document.fail(
+          key, "must not be 0, got 0; a positive radius is convex towards the light, a negative radius is concave");
+}
+
 void check_entrance(const Document& document) {
   if (!document.has("entrance_surface")) return;
-  const std::string_view key =
-      document.has("entrance_surface.mesh") ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+  const std::string_view key = document.has("entrance_surface.kind")   ? "entrance_surface.kind"
+                               : document.has("entrance_surface.mesh") ? "entrance_surface.mesh"
+                                                                       : "entrance_surface.turned_part";
   if (!document.has(key))
-    document.fail(key, "is missing: give the file of a turned part, or an STL file with entrance_surface.mesh");
+    document.fail(key, "is missing: give the kind of the surface, the file of a turned part, or an STL file (mesh)");
   if (has_elements(document) && document.text("array.extent") == "infinite") document.fail(key, kNotInfinite);
+  check_entrance_radii(document);
 }
 
 constexpr std::string_view kFormTerms = "form.terms";
@@ -411,10 +421,13 @@ constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
                                              "entrance.roughness_sq_nm",
                                              "entrance.correlation_length_um",
                                              "idealisation.entrance",
+                                             "entrance_surface.kind",
                                              "entrance_surface.turned_part",
                                              "entrance_surface.mesh"};
 constexpr schema::Words kZoneKeys = {"zone", "array.extent", "array.x_offset_mm", "array.y_offset_mm"};
-constexpr schema::Words kEntranceKeys = {"entrance_surface.turned_part", "entrance_surface.mesh", "array.extent"};
+constexpr schema::Words kEntranceKeys = {"entrance_surface.kind",      "entrance_surface.turned_part",
+                                         "entrance_surface.mesh",      "array.extent",
+                                         "entrance_surface.radius_mm", "entrance_surface.radii_mm"};
 
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
@@ -538,7 +551,8 @@ constexpr schema::Rule kRules[] = {
                   "Zones must cover every point of a finite part without margins exactly once. All zones together have "
                   "at most 1000 regions and 1e5 elements. The arrangement of a zone must not be `single` or `pins`.",
                   check_by<check_zones>},
-    schema::Check{kEntranceKeys, "An `[entrance_surface]` needs one file, and the part must be finite.",
+    schema::Check{kEntranceKeys,
+                  "An `[entrance_surface]` needs a kind or one file, and the part must be finite. Radii must not be 0.",
                   check_by<check_entrance>}};
 
 }  // namespace

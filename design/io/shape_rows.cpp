@@ -15,7 +15,6 @@ constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
 constexpr Words kPartialElements = {"cut", "omit"};
-constexpr Words kSides = {"top", "bottom"};
 
 constexpr Condition kElementOfNoBall =
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has diameter_mm");
@@ -119,9 +118,6 @@ constexpr Row kArrayRows[] = {
      kThresholdOnly},
     {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
-constexpr std::string_view kScaleMeaning =
-    "Factor that converts the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
-    "micrometres.";
 constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";
 constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
@@ -145,25 +141,6 @@ constexpr Row kPartRows[] = {
     {"facets", File{"a table of planes"}, kNone,
      "Table with the plane of each facet of a finite part. These planes replace the nominal planes of the facets.",
      kFacetsOnly}};
-
-constexpr Condition kTurnedOnly[] = {
-    is_absent("mesh", "not allowed together with mesh, because a part has only one entrance surface")};
-constexpr Condition kSideOnly[] = {is_given("mesh")};
-
-constexpr Row kEntranceRows[] = {
-    renamed("turned", Row{"turned_part", File{"a turned part"}, kNone,
-                          "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an "
-                          "approximation by triangles. The material is below the surface.",
-                          kTurnedOnly}),
-    {"mesh", File{"an STL file"}, kNone, "STL mesh of the entrance surface, binary or ASCII."},
-    {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
-    {"mesh_side", Word{kSides}, "top",
-     "Side of the mesh that is the entrance surface. `\"top\"`: the triangles that face +z. `\"bottom\"`: the "
-     "triangles that face -z, with reversed orientation. `\"bottom\"` is needed for `machined.stl` of `retrace turn`, "
-     "which is the counterpart that is moulded in the turned surface.",
-     kSideOnly},
-    {"centre_mm", Numbers{2, kPlace, "coordinates, x and y"}, Computed{"the centre of the part"},
-     "`[x, y]`: position of the origin of the file in the part frame."}};
 
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
 constexpr Condition kBesideLines[] = {is_absent("mask", "only allowed together with rows or columns"),
@@ -218,9 +195,6 @@ std::span<const Row> part_rows() {
 }
 std::span<const Row> zone_rows() {
   return kZoneRows;
-}
-std::span<const Row> entrance_rows() {
-  return kEntranceRows;
 }
 
 }  // namespace retrace::design

@@ -21,6 +21,9 @@ constexpr int kFewestCells = 64;
 constexpr double kSameBend = 1.3;
 // Changes of slope below this value are rounding errors; the surface is then treated as a plane.
 constexpr double kFlat = 1e-9;
+// Smallest cosine of the angle between the normal of a surface and z: the cosine of 89 degrees. Steeper surfaces count
+// as vertical.
+constexpr double kMinUpward = 0.017452406437283512;
 // Distance from a corner at which the local curvature is measured, relative to the size of a grid cell.
 constexpr double kSmall = 1e-3;
 
@@ -138,24 +141,143 @@ EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
 }  // namespace
 
 EntranceSurface::EntranceSurface(FreeformSurface surface, const Vec3& origin_mm, double finest_mm)
-    : surface_(std::move(surface)), origin_mm_(origin_mm), finest_mm_(finest_mm) {
+    : EntranceSurface(std::move(surface), SurfacePose{origin_mm}, finest_mm) {}
+
+EntranceSurface::EntranceSurface(FreeformSurface surface, const SurfacePose& pose, double finest_mm)
+    : surface_(std::move(surface)),
+      pose_(pose),
+      finest_mm_(finest_mm),
+      is_rotated_(!pose.part_from_surface.isIdentity(0.0)),
+      is_inclined_(!pose.part_from_surface.col(2).head<2>().isZero(0.0)) {
   for (const Lenslet& lenslet : surface_.lenslets()) finest_mm_ = std::min(finest_mm_, lenslet.outer.min_radius_mm);
 }
 
 EntranceSurface::SurfaceSample EntranceSurface::at(const Vec2& point_mm) const {
-  const Vec2 place = point_mm - origin_mm_.head<2>();
-  const jets::Gradient z = surface_.gradient(place.x(), place.y());
-  if (std::isfinite(z.x) && std::isfinite(z.y)) return {origin_mm_.z() + z.value, {z.x, z.y}};
-  return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
+  const Vec2 across = point_mm - pose_.origin_mm.head<2>();
+  if (is_inclined_) return inclined_sample(across);
+  const Eigen::Matrix2d rotation = pose_.part_from_surface.topLeftCorner<2, 2>();
+  const jets::Gradient z = gradient_at(is_rotated_ ? Vec2(rotation.transpose() * across) : across);
+  const Vec2 slope(z.x, z.y);
+  return {pose_.origin_mm.z() + z.value, is_rotated_ ? Vec2(rotation * slope) : slope};
 }
 
-/// Returns the slope from central differences. It is used where the gradient is not finite. For example, a formula of
-/// the radius r has no derivative at r = 0, although its surface may be smooth there.
-Vec2 EntranceSurface::slope_across(const Vec2& p) const {
+/// Returns height and slope in the frame of the surface. The slope is computed from central differences where the
+/// gradient is not finite. For example, a formula of the radius r has no derivative at r = 0, although its surface may
+/// be smooth there.
+jets::Gradient EntranceSurface::gradient_at(const Vec2& p) const {
+  const jets::Gradient z = surface_.gradient(p.x(), p.y());
+  if (std::isfinite(z.x) && std::isfinite(z.y)) return z;
   constexpr double kStep = 1e-5;
-  return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),
-              surface_.height_mm(p.x(), p.y() + kStep) - surface_.height_mm(p.x(), p.y() - kStep)) /
-         (2.0 * kStep);
+  const Vec2 slope = Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),
+                          surface_.height_mm(p.x(), p.y() + kStep) - surface_.height_mm(p.x(), p.y() - kStep)) /
+                     (2.0 * kStep);
+  return {surface_.height_mm(p.x(), p.y()), slope.x(), slope.y()};
+}
+
+/// Returns a normal of the surface in the part frame. It is not normalised.
+/// \param slope slope in the frame of the surface
+Vec3 EntranceSurface::normal_of(const Vec2& slope) const {
+  return pose_.part_from_surface * Vec3(-slope.x(), -slope.y(), 1.0);
+}
+
+/// Returns the crossing to which Newton's method converges from a height. Returns nothing if it does not converge, or
+/// if the normal of the surface does not point upwards at the crossing.
+/// \param across_mm position of the vertical line relative to the origin of the surface
+std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Vec2& across_mm, double z_mm) const {
+  constexpr int kMaxSteps = 40;
+  constexpr double kSmallStep = 1e-12;  // relative to the distance from the origin
+  for (int k = 0; k < kMaxSteps; ++k) {
+    const Vec3 local = pose_.part_from_surface.transpose() * Vec3(across_mm.x(), across_mm.y(), z_mm);
+    const jets::Gradient height = gradient_at(local.head<2>());
+    const Vec2 slope(height.x, height.y);
+    // The gap between line and surface along the axis of the surface changes by normal.z() per mm along the line.
+    const Vec3 normal = normal_of(slope);
+    const double step = (height.value - local.z()) / normal.z();
+    if (!std::isfinite(step)) return std::nullopt;
+    z_mm += step;
+    if (std::abs(step) > kSmallStep * (across_mm.norm() + std::abs(z_mm))) continue;
+    if (normal.z() < kMinUpward * normal.norm()) return std::nullopt;
+    return Crossing{z_mm, local.head<2>(), slope};
+  }
+  return std::nullopt;
+}
+
+/// Returns the crossing that is connected to the origin of the surface. The line on which the crossing is searched is
+/// moved in small steps from the origin to `across_mm`.
+std::optional<EntranceSurface::Crossing> EntranceSurface::followed_crossing(const Vec2& across_mm) const {
+  constexpr int kSteps = 64;
+  const Vec3 from = pose_.part_from_surface * Vec3(0.0, 0.0, surface_.height_mm(0.0, 0.0));
+  std::optional<Crossing> crossing = crossing_near(from.head<2>(), from.z());
+  const Vec2 step = (across_mm - from.head<2>()) / kSteps;
+  for (int k = 1; crossing && k <= kSteps; ++k) {
+    const Vec3 normal = normal_of(crossing->local_slope);
+    const double rise = -normal.head<2>().dot(step) / normal.z();
+    crossing = crossing_near(from.head<2>() + k * step, crossing->z_mm + rise);
+  }
+  return crossing;
+}
+
+std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_at(const Vec2& across_mm) const {
+  const Vec3 axis = pose_.part_from_surface.col(2);
+  const double z_mm = -axis.head<2>().dot(across_mm) / axis.z();
+  if (const std::optional<Crossing> crossing = crossing_near(across_mm, z_mm)) return crossing;
+  return followed_crossing(across_mm);
+}
+
+EntranceSurface::SurfaceSample EntranceSurface::inclined_sample(const Vec2& across_mm) const {
+  const std::optional<Crossing> crossing = crossing_at(across_mm);
+  if (!crossing) return {NAN, Vec2::Constant(NAN)};
+  const Vec3 normal = normal_of(crossing->local_slope);
+  return {pose_.origin_mm.z() + crossing->z_mm, -normal.head<2>() / normal.z()};
+}
+
+std::optional<Vec2> EntranceSurface::surface_position(const Vec2& point_mm) const {
+  const Vec2 across = point_mm - pose_.origin_mm.head<2>();
+  if (!is_inclined_) return Vec2(pose_.part_from_surface.topLeftCorner<2, 2>().transpose() * across);
+  const std::optional<Crossing> crossing = crossing_at(across);
+  return crossing ? std::optional(crossing->position_mm) : std::nullopt;
+}
+
+bool EntranceSurface::faces_up_at(const Vec2& position_mm) const {
+  const jets::Gradient height = gradient_at(position_mm);
+  const Vec3 normal = normal_of({height.x, height.y});
+  return std::isfinite(height.value) && normal.z() >= kMinUpward * normal.norm();
+}
+
+namespace {
+
+/// Returns the first of some points of the plan between `p` and `q` at which the surface is vertical or folds, or
+/// nothing. Between two points of a surface that folds, there is a point whose normal does not point upwards.
+std::optional<Vec2> fold_between(const EntranceSurface& surface, const Vec2& p, const Vec2& q) {
+  constexpr int kPointsBetween = 8;
+  const std::optional<Vec2> a = surface.surface_position(p);
+  const std::optional<Vec2> b = surface.surface_position(q);
+  if (!a || !b) return a ? q : p;
+  for (int k = 0; k <= kPointsBetween; ++k) {
+    const double fraction = static_cast<double>(k) / kPointsBetween;
+    if (!surface.faces_up_at(*a + fraction * (*b - *a))) return Vec2(p + fraction * (q - p));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void check_folds(const EntranceSurface& surface, const Polygon& outline) {
+  constexpr int kGrid = 64;
+  const Rectangle box = bounding_box(outline);
+  const auto check_side = [&](const Vec2& p, const Vec2& q) {
+    if (!is_inside(outline, p) || !is_inside(outline, q)) return;
+    if (const std::optional<Vec2> fold = fold_between(surface, p, q))
+      throw InputError(
+          fmt::format("must not fold or be vertical over the part, but it does at x = {}, y = {} mm of the part",
+                      fixed(fold->x(), 4), fixed(fold->y(), 4)));
+  };
+  const auto point = [&](int i, int j) { return Vec2(box.lower + Vec2(i, j).cwiseProduct(box.size()) / kGrid); };
+  for (int j = 0; j <= kGrid; ++j)
+    for (int i = 0; i <= kGrid; ++i) {
+      check_side(point(i, j), point(i + 1, j));
+      check_side(point(i, j), point(i, j + 1));
+    }
 }
 
 int cells_to_resolve(const EntranceSurface& surface, const Polygon& outline) {

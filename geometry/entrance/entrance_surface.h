@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "geometry/part/surface_patch.h"
@@ -15,8 +16,19 @@
 
 namespace retrace::geometry {
 
-/// Curved face through which light enters a part, in the part frame. It is a freeform surface at a given origin. The
-/// material is below it.
+/// Position and orientation of a surface: a point p of the frame of the surface is at part_from_surface * p + origin_mm
+/// in the part frame.
+struct SurfacePose {
+  Vec3 origin_mm = Vec3::Zero();
+  Eigen::Matrix3d part_from_surface = Eigen::Matrix3d::Identity();  ///< rotation
+};
+
+/// Curved face through which light enters a part, in the part frame. It is a freeform surface at a given position and
+/// orientation. The material is below it.
+///
+/// An inclined surface is evaluated along the line through the point parallel to z. The intersection with the surface
+/// is found by Newton's method, beginning at the tangent plane of the surface's origin. The slope is that of the
+/// rotated normal, so it is as exact as that of the freeform surface.
 class EntranceSurface {
  public:
   struct SurfaceSample {
@@ -26,19 +38,44 @@ class EntranceSurface {
   /// \param finest_mm size of the smallest known features other than its lenslets
   EntranceSurface(FreeformSurface surface, const Vec3& origin_mm,
                   double finest_mm = std::numeric_limits<double>::infinity());
+  EntranceSurface(FreeformSurface surface, const SurfacePose& pose,
+                  double finest_mm = std::numeric_limits<double>::infinity());
 
   /// Returns height and slope at a point. They are not finite where there is no surface. May be called from several
   /// threads.
   SurfaceSample at(const Vec2& point_mm) const;
   /// Returns the size of the smallest features, such as lenslets, or infinity if no features are known.
   double finest_mm() const { return finest_mm_; }
+  /// Returns the unit vector along the axis of the surface. It is z unless the surface is inclined.
+  Vec3 axis() const { return pose_.part_from_surface.col(2); }
+  bool is_inclined() const { return is_inclined_; }
+  /// Returns the point of the surface above a point of the plan, in the frame of the surface (x and y). Returns nothing
+  /// where there is no surface.
+  std::optional<Vec2> surface_position(const Vec2& point_mm) const;
+  /// Returns true if the normal of the surface at a point is less than 89 degrees from z.
+  /// \param position_mm point in the frame of the surface, as returned by surface_position()
+  bool faces_up_at(const Vec2& position_mm) const;
 
  private:
-  Vec2 slope_across(const Vec2& place) const;
+  /// Intersection of the surface with a line parallel to z.
+  struct Crossing {
+    double z_mm = 0.0;                ///< height above the origin of the surface, in the part frame
+    Vec2 position_mm = Vec2::Zero();  ///< in the frame of the surface
+    Vec2 local_slope = Vec2::Zero();  ///< slope in the frame of the surface
+  };
+
+  jets::Gradient gradient_at(const Vec2& position_mm) const;
+  Vec3 normal_of(const Vec2& slope) const;
+  std::optional<Crossing> crossing_near(const Vec2& across_mm, double z_mm) const;
+  std::optional<Crossing> crossing_at(const Vec2& across_mm) const;
+  std::optional<Crossing> followed_crossing(const Vec2& across_mm) const;
+  SurfaceSample inclined_sample(const Vec2& across_mm) const;
 
   FreeformSurface surface_;
-  Vec3 origin_mm_;
+  SurfacePose pose_;
   double finest_mm_;
+  bool is_rotated_ = false;   ///< false: the axes of the surface are those of the part
+  bool is_inclined_ = false;  ///< true: the z axis of the surface is not that of the part
 };
 
 /// Entrance of a part: an exact surface, or a mesh whose triangles all face +z.
@@ -61,6 +98,11 @@ struct EntranceRange {
 /// follows from the size of the smallest features.
 /// \throw InputError if the surface has no finite height somewhere over the outline
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
+
+/// Checks that an inclined surface does not fold over the outline: it must have exactly one point above each point of
+/// the outline, and its normal must be less than 89 degrees from z. The surface is checked at samples and between them.
+/// \throw InputError with the position of the fold, with a text that begins with "must"
+void check_folds(const EntranceSurface& surface, const Polygon& outline);
 
 /// Returns the number of cells along the longer side of the outline's bounding box that resolves all features of a
 /// surface. If no feature size is known, the number is increased until grids with two and four times as many cells find

@@ -57,6 +57,16 @@ T evaluate_asphere(const Asphere& a, const T& x, const T& y) {
   return z;
 }
 
+template <class T>
+T evaluate_biconic(const Biconic& b, const T& x, const T& y) {
+  using std::sqrt;
+  const auto [cx, cy] = b.curvatures_per_mm;
+  const T xx = x * x;
+  const T yy = y * y;
+  const T under_root = 1.0 - (xx * ((1.0 + b.conics[0]) * cx * cx) + yy * ((1.0 + b.conics[1]) * cy * cy));
+  return (xx * cx + yy * cy) / (sqrt(under_root) + 1.0);
+}
+
 /// Evaluates a polynomial by Horner's rule in y, nested in Horner's rule in x.
 template <class T>
 T evaluate_polynomial(const XyPolynomial& p, const T& x_mm, const T& y_mm) {
@@ -96,8 +106,9 @@ XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_
 template <class T>
 T Sag::evaluate_without_formula(const T& x, const T& y) const {
   const bool has_asphere = asphere.curvature_per_mm != 0.0 || !asphere.even.empty();
-  if (polynomial && !has_asphere) return evaluate_polynomial(*polynomial, x, y);
-  const T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
+  if (polynomial && !has_asphere && !biconic) return evaluate_polynomial(*polynomial, x, y);
+  T z = has_asphere ? evaluate_asphere(asphere, x, y) : constant_like(x, 0.0);
+  if (biconic) z = z + evaluate_biconic(*biconic, x, y);
   return polynomial ? z + evaluate_polynomial(*polynomial, x, y) : z;
 }
 

@@ -25,6 +25,13 @@ struct Asphere {
   enum class Across { radius, x, y } across = Across::radius;  ///< variable that replaces r: for cylinders x or y
 };
 
+/// Biconic surface: two conics in the planes y = 0 and x = 0, (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1
+/// + ky) cy^2 y^2)). If both curvatures and both conic constants are equal, it is a conic of revolution.
+struct Biconic {
+  std::array<double, 2> curvatures_per_mm{};
+  std::array<double, 2> conics{};
+};
+
 /// Polynomial sum C_ij (x / scale)^i (y / scale)^j over i + j <= degree. C is in mm.
 struct XyPolynomial {
   double scale_mm = 1.0;
@@ -53,6 +60,7 @@ XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_
 struct Sag {
   Asphere asphere;
   std::optional<XyPolynomial> polynomial;
+  std::optional<Biconic> biconic;
   std::optional<Formula> formula;
   std::array<double, 2> position_mm{};  ///< position of a lenslet: cx and cy of the formula
 
@@ -69,7 +77,8 @@ std::vector<std::string> sag_variables();
 
 /// Returns true if the sag is a polynomial.
 inline bool is_polynomial(const Sag& sag) {
-  return !sag.formula && sag.asphere.curvature_per_mm == 0.0 && sag.asphere.across == Asphere::Across::radius;
+  return !sag.formula && !sag.biconic && sag.asphere.curvature_per_mm == 0.0 &&
+         sag.asphere.across == Asphere::Across::radius;
 }
 
 }  // namespace retrace::geometry

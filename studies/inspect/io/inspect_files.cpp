@@ -77,7 +77,7 @@ std::string form_text(const Inspection& i) {
 std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
   return fmt::format("  entrance surface    {}, z = {} to {} mm, slopes up to {} degrees\n",
-                     printable(i.design.entrance->name), fixed(i.entrance->range.lowest_mm, 6),
+                     printable(i.design.entrance->name()), fixed(i.entrance->range.lowest_mm, 6),
                      fixed(i.entrance->range.highest_mm, 6), fixed_visible(i.entrance->steepest_deg, 2));
 }
 
