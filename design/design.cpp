@@ -110,6 +110,23 @@ std::string_view Design::entrance_key() const {
   return entrance && entrance->is_mesh() ? "entrance_surface.mesh" : "entrance_surface.turned_part";
 }
 
+const geometry::EntranceInclination* Design::inclination() const {
+  const EntranceForm* const form = entrance ? entrance->form() : nullptr;
+  if (form == nullptr) return nullptr;
+  const bool is_upright = form->inclination.incidence_deg == 0.0 && form->inclination.pin_angle_deg == 0.0;
+  return is_upright ? nullptr : &form->inclination;
+}
+
+geometry::Vec3 Design::reference_axis() const {
+  return inclination() != nullptr ? geometry::reference_axis_of(*inclination()) : geometry::Vec3::UnitZ();
+}
+
+double Design::incident_fraction(const geometry::Vec3& to_source) const {
+  if (inclination() == nullptr) return to_source.z();
+  const geometry::Vec3 axis = geometry::rotation_of(*inclination()).col(2);
+  return std::max(0.0, axis.dot(to_source)) / axis.z();
+}
+
 const ArrayMask* Design::mask() const {
   return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
 }

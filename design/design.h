@@ -213,6 +213,10 @@ struct EntranceFile {
 struct EntranceForm {
   geometry::EntranceShape shape;
   double rotation_deg = 0.0;  ///< rotation about the axis of the face, before the face is inclined
+  geometry::EntranceInclination inclination;
+  /// True if the design gives `pin_angle_deg`. Otherwise it is the angle of refraction of light along the reference
+  /// axis.
+  bool has_pin_angle = false;
 };
 
 /// Curved entrance face. It replaces the plane entrance face.
@@ -375,6 +379,16 @@ struct Design {
   /// Returns the position of the key that makes the facets differ from smooth planes. This is the key of the texture
   /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
+  /// Returns the inclination of the entrance face, or null if the axis of the face and the reference axis are z.
+  const geometry::EntranceInclination* inclination() const;
+  /// Returns the reference axis of photometry: the direction H = V = 0, which is the axis of the vehicle (UN R3, R150).
+  /// It is a unit vector in the part frame, towards the light. It is +z unless the entrance face is inclined.
+  geometry::Vec3 reference_axis() const;
+  /// Returns the power that falls on the part, divided by the illuminance perpendicular to the beam and by the area of
+  /// the part in plan. It is the cosine of the incidence unless the entrance face is inclined. The incident beam then
+  /// covers the outline in a plane perpendicular to the axis of the face.
+  /// \param to_source unit vector in the part frame
+  double incident_fraction(const geometry::Vec3& to_source) const;
   /// Returns the key that determines the curved entrance face.
   std::string_view entrance_key() const;
 

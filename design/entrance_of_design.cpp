@@ -101,17 +101,32 @@ geometry::Entrance placed_entrance(const Design& design, const geometry::Part& p
                       : turned_entrance(file, part, origin_mm);
 }
 
-/// Checks that the entrance face is above the highest point of the back.
+/// Checks that the entrance face is above the back: above the highest point of the back or, for exact surfaces, above
+/// the back at each point of the part.
 /// \throw InputError if it is not
-void check_room(const geometry::Entrance& entrance, const geometry::Part& part, const std::string& name) {
-  try {
-    const geometry::EntranceRange range = geometry::entrance_range(entrance, part.outline);
-    if (range.lowest_mm > part.top_mm) return;
+void require_room(const geometry::Entrance& entrance, const geometry::Part& part) {
+  const geometry::EntranceRange range = geometry::entrance_range(entrance, part.outline);
+  if (range.lowest_mm > part.top_mm) return;
+  const auto* const surface = std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&entrance);
+  if (surface == nullptr)
     throw InputError(
         fmt::format("must be above the back of the part, whose highest point is at z = {} mm, but its lowest point is "
                     "at z = {} mm (x = {}, y = {} mm): increase body.thickness_mm",
                     fixed(part.top_mm, 4), fixed(range.lowest_mm, 4), fixed(range.lowest_at_mm.x(), 4),
                     fixed(range.lowest_at_mm.y(), 4)));
+  const std::optional<geometry::EntranceContact> contact = geometry::find_contact(**surface, part);
+  if (contact)
+    throw InputError(
+        fmt::format("must be above the back of the part, but at x = {}, y = {} mm it is at z = {} mm and the back is "
+                    "at z = {} mm: increase body.thickness_mm",
+                    fixed(contact->position_mm.x(), 4), fixed(contact->position_mm.y(), 4),
+                    fixed(contact->entrance_mm, 4), fixed(contact->back_mm, 4)));
+}
+
+/// Calls require_room(), and adds the name of the file to its error message unless the name is empty.
+void check_room(const geometry::Entrance& entrance, const geometry::Part& part, const std::string& name) {
+  try {
+    require_room(entrance, part);
   } catch (const InputError& error) {
     throw InputError({name, 0, ""}, error.what());
   }

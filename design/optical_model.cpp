@@ -15,10 +15,8 @@
 #include "design/entrance_condition.h"
 #include "design/entrance_of_design.h"
 #include "design/form_of_design.h"
+#include "design/light_and_index.h"
 #include "design/part_of_design.h"
-#include "materials/io/glass_catalogue.h"
-#include "materials/io/index_record.h"
-#include "materials/io/spectrum_reader.h"
 #include "surface_models/form.h"
 
 namespace retrace::design {
@@ -28,51 +26,6 @@ namespace {
 constexpr double kMaxFringesPerStep = 0.5;
 constexpr std::string_view kFacetLayers = "coating.facets";
 constexpr std::string_view kEntranceLayers = "coating.entrance";
-
-/// Returns the position of the key that determines the wavelengths of the light.
-InputLocation light_location(const Design& design) {
-  return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
-}
-
-/// Returns the material of the part: a glass of the design's catalogue, the material of an index record, or a shipped
-/// material.
-materials::Material material_of(const Design& design, const materials::MaterialLibrary& library) {
-  const Substance& substance = design.substance;
-  const InputLocation where = design.where("body.material");
-  if (!substance.catalogue) return library.find(substance.material, where);
-  const auto in_catalogue = [&](const auto& read) {
-    try {
-      return read();
-    } catch (const InputError& error) {
-      // Adds the position of the key that names the file.
-      throw InputError(design.where("body.catalogue"), error.what());
-    }
-  };
-  if (materials::is_index_record(substance.catalogue->file))
-    return in_catalogue([&] { return materials::read_index_record(substance.catalogue->file); });
-  const auto catalogue = in_catalogue([&] { return materials::GlassCatalogue::read(substance.catalogue->file); });
-  catalogue.require(substance.material, where);
-  return in_catalogue([&] { return catalogue.glass(substance.material); });
-}
-
-/// Checks that the data of the material cover the temperature of the design.
-/// \throw InputError at `body.temperature_c` if they do not
-void require_temperature(const Design& design, const materials::Material& material) {
-  const std::optional<double>& temperature_c = design.substance.temperature_c;
-  if (temperature_c && *temperature_c != material.temperature_c && !material.thermo_optic)
-    throw InputError(design.where("body.temperature_c"),
-                     fmt::format("must be {}, because {} has no thermo-optic coefficients, got {}",
-                                 shortest(material.temperature_c), material.name, shortest(*temperature_c)));
-}
-
-double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
-                           double wavelength_nm, double temperature_c) {
-  try {
-    return materials::index_relative_to_air(material, air, wavelength_nm, temperature_c);
-  } catch (const InputError& error) {
-    throw InputError(light_location(design), error.what());  // adds the position at which the wavelength was given
-  }
-}
 
 /// Returns the height map in the orientation of the facet, with its x axis horizontal and its form removed. Warnings
 /// are appended.
@@ -211,47 +164,10 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
   optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
-  optics.index = design.substance.refractive_index
-                     ? *design.substance.refractive_index
-                     : index_at_wavelength(design, material, library.air(), wavelength_nm,
-                                           design.substance.temperature_c.value_or(material.temperature_c));
-  if (!(optics.index >= 1.0))
-    throw InputError(design.where("body.material"),
-                     fmt::format("the refractive index of {} at {} nm must be >= 1, got {}", material.name,
-                                 wavelength_nm, optics.index));
+  optics.index = index_of_body(design, material, library.air(), wavelength_nm);
   optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
-}
-
-/// Returns the spectral flux of the design's lamp or of its lines, before wavelengths are selected.
-materials::Spectrum flux_of(const Design& design) {
-  using Kind = LightSpectrum::Kind;
-  const LightSpectrum& light = *design.light.spectrum();
-  const materials::CieTable cie = materials::shipped_cie_table();
-  const materials::SpectralCurve* const efficiency = light.photopic ? &cie.photopic_efficiency : nullptr;
-  switch (light.kind) {
-    case Kind::illuminant_a: return materials::resolved_spectrum(cie.illuminant_a, efficiency);
-    case Kind::illuminant_d65: return materials::resolved_spectrum(cie.illuminant_d65, efficiency);
-    case Kind::file: return materials::resolved_spectrum(materials::read_spectral_power(light.file), efficiency);
-    case Kind::lines: break;
-  }
-  std::vector<materials::SpectralLine> lines;
-  for (const LightSpectrum::Line& line : light.lines) lines.push_back({line.wavelength_nm, line.power});
-  return materials::line_spectrum(lines, efficiency);
-}
-
-/// Returns the wavelengths to trace: every line of the design, or a few wavelengths that represent a lamp.
-materials::Spectrum wavelengths_to_trace(const Design& design) {
-  if (!design.light.spectrum()) return materials::monochromatic(design.light.wavelength_nm());
-  const LightSpectrum& light = *design.light.spectrum();
-  try {
-    const materials::Spectrum flux = flux_of(design);
-    return light.kind == LightSpectrum::Kind::lines ? flux : materials::traced_spectrum(flux);
-  } catch (const InputError& error) {
-    throw InputError(design.where("light.spectrum"),
-                     error.what());  // adds the position of the key that names the file
-  }
 }
 
 bool is_valid_at(const materials::Metal& metal, double wavelength_nm) {

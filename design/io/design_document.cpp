@@ -249,6 +249,9 @@ void set_entrance_form(Keys& keys, const EntranceForm& form) {
                  }},
       form.shape);
   keys.set("rotation_deg", form.rotation_deg);
+  keys.set("incidence_deg", form.inclination.incidence_deg);
+  keys.set("azimuth_deg", form.inclination.azimuth_deg);
+  if (form.has_pin_angle) keys.set("pin_angle_deg", form.inclination.pin_angle_deg);
 }
 
 void set_entrance_file(Keys& keys, const Design& design, const EntranceFile& file) {

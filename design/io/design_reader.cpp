@@ -257,6 +257,7 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.idealisation = {document.text("idealisation.facets") == "mirror",
                          document.text("idealisation.entrance") == "lossless"};
   design.document = std::move(given);
+  find_pin_angle(design);
   return design;
 }
 

@@ -1,8 +1,12 @@
 #include "design/io/entrance_reader.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
+
+#include "core/angle.h"
+#include "design/light_and_index.h"
 
 namespace retrace::design {
 namespace {
@@ -33,6 +37,18 @@ geometry::EntranceShape read_entrance_shape(const Document& document) {
   return geometry::PlaneEntrance{};
 }
 
+EntranceForm read_entrance_form(const Document& document) {
+  EntranceForm form;
+  form.shape = read_entrance_shape(document);
+  form.rotation_deg = document.number(key_in_surface("rotation_deg"));
+  form.inclination.incidence_deg = document.number(key_in_surface("incidence_deg"));
+  form.inclination.azimuth_deg = document.number(key_in_surface("azimuth_deg"));
+  const std::optional<double> pin_angle_deg = document.number_if(key_in_surface("pin_angle_deg"));
+  form.has_pin_angle = pin_angle_deg.has_value();
+  form.inclination.pin_angle_deg = pin_angle_deg.value_or(0.0);
+  return form;
+}
+
 EntranceFile read_entrance_file(const Document& document) {
   EntranceFile entrance;
   entrance.is_mesh = document.has(key_in_surface("mesh"));
@@ -49,11 +65,18 @@ std::optional<CurvedEntrance> read_entrance(const Document& document) {
   if (!document.has("entrance_surface")) return std::nullopt;
   CurvedEntrance entrance;
   if (document.has(key_in_surface("kind")))
-    entrance.surface = EntranceForm{read_entrance_shape(document), document.number(key_in_surface("rotation_deg"))};
+    entrance.surface = read_entrance_form(document);
   else
     entrance.surface = read_entrance_file(document);
   if (document.has(key_in_surface("centre_mm"))) entrance.centre_mm = pair_in_surface(document, "centre_mm");
   return entrance;
+}
+
+void find_pin_angle(Design& design) {
+  EntranceForm* const form = design.entrance ? std::get_if<EntranceForm>(&design.entrance->surface) : nullptr;
+  if (form == nullptr || form->has_pin_angle || form->inclination.incidence_deg == 0.0) return;
+  const double sine = std::sin(Angle::from_deg(form->inclination.incidence_deg).rad());
+  form->inclination.pin_angle_deg = Angle::from_rad(std::asin(sine / index_at_centroid(design))).deg();
 }
 
 }  // namespace retrace::design

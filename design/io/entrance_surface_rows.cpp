@@ -9,6 +9,7 @@ using namespace schema;
 constexpr NumberRange kPositionMm{.low = -1e6, .high = 1e6};
 constexpr NumberRange kRadiusOfFace{.low = -1e9, .high = 1e9};
 constexpr NumberRange kConicOfFace{.low = -1e6, .high = 1e6};
+constexpr NumberRange kInclinationDeg{.low = 0.0, .high = 60.0};
 constexpr Words kSidesOfMesh = {"top", "bottom"};
 constexpr double kNoConics[] = {0.0, 0.0};
 
@@ -41,6 +42,19 @@ constexpr Row kEntranceRows[] = {
      "rad), measured from the origin of the surface. The formula has the same elements as `substrate.sag_mm`.",
      kFormulaOnly},
     {"rotation_deg", Number{kAzimuth}, 0.0, "Rotation of the surface about its axis, from +x towards +y.", kFormGiven},
+    {"incidence_deg", Number{kInclinationDeg}, 0.0,
+     "Angle between the reference axis (the axis of the vehicle, H = V = 0 in photometry) and the axis of the surface, "
+     "which is its normal at the origin.",
+     kFormGiven},
+    {"azimuth_deg", Number{kAzimuth}, 0.0,
+     "Azimuth of the direction in which the reference axis leans away from the axis of the surface, measured from +x "
+     "towards +y.",
+     kFormGiven},
+    {"pin_angle_deg", Number{kInclinationDeg}, Computed{"the angle of refraction of light along the reference axis"},
+     "Angle between the axes of the elements, which are parallel to z, and the axis of the surface. By default, light "
+     "along the reference axis is refracted at the origin into the direction of the elements, at the wavelength of the "
+     "design (for a spectrum, at its centroid).",
+     kFormGiven},
     renamed("turned", Row{"turned_part", File{"a turned part"}, kNone,
                           "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an "
                           "approximation by triangles. The material is below the surface.",

@@ -82,14 +82,15 @@ bool same_bend(double a, double b, double size_mm) {
   return std::max(a, b) * size_mm < kFlat || (a <= kSameBend * b && b <= kSameBend * a);
 }
 
-/// Searches for the nearest local maximum (sign 1) or minimum (sign -1) over the outline, beginning at a point. The
-/// search uses decreasing steps along the axes, the diagonals and the edges of the outline (R. Hooke, T. A. Jeeves, J.
-/// ACM 8 (1961), 212).
-Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, double step_mm, double sign) {
+/// Searches for the nearest local maximum of a function over the outline, beginning at a point. The search uses
+/// decreasing steps along the axes, the diagonals and the edges of the outline (R. Hooke, T. A. Jeeves, J. ACM 8
+/// (1961), 212).
+template <class Function>
+Vec2 climb(const Function& function, const Polygon& outline, Vec2 from, double step_mm) {
   std::vector<Vec2> directions = {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1).normalized(), Vec2(1, -1).normalized()};
   for (std::size_t k = 0; k < outline.size() && k < 8; ++k)
     directions.push_back((outline[(k + 1) % outline.size()] - outline[k]).normalized());
-  double best = sign * surface.at(from).height_mm;
+  double best = function(from);
   const double least_mm = 1e-9 * step_mm;
   while (step_mm > least_mm) {
     bool moved = false;
@@ -97,7 +98,7 @@ Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, do
       for (const double way : {step_mm, -step_mm}) {
         const Vec2 p = from + way * direction;
         if (!is_inside(outline, p)) continue;
-        const double value = sign * surface.at(p).height_mm;
+        const double value = function(p);
         if (!(value > best)) continue;
         best = value;
         from = p;
@@ -108,13 +109,25 @@ Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, do
   return from;
 }
 
+/// Returns the plane perpendicular to the axis of an inclined surface that touches the surface from above.
+TouchingPlane plane_touching(const EntranceSurface& surface, const Polygon& outline, const std::vector<Vec2>& samples,
+                             double step_mm) {
+  const Vec3 axis = surface.axis();
+  const Vec2 slope = -axis.head<2>() / axis.z();
+  const auto height_above = [&](const Vec2& p) { return surface.at(p).height_mm - slope.dot(p); };
+  const Vec2 highest = *std::max_element(
+      samples.begin(), samples.end(), [&](const Vec2& p, const Vec2& q) { return height_above(p) < height_above(q); });
+  return {height_above(climb(height_above, outline, highest, step_mm)), slope};
+}
+
 EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
   const int cells = cells_to_resolve(surface, outline);
   EntranceRange range;
   range.lowest_mm = INFINITY;
   range.highest_mm = -INFINITY;
-  for (const Vec2& p : sample_points(outline, cells)) {
+  const std::vector<Vec2> samples = sample_points(outline, cells);
+  for (const Vec2& p : samples) {
     const EntranceSurface::SurfaceSample place = surface.at(p);
     if (!std::isfinite(place.height_mm) || !place.slope.allFinite())
       throw InputError(fmt::format(
@@ -131,10 +144,13 @@ EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
     }
   }
   const double step_mm = box.size().maxCoeff() / cells;
-  range.lowest_at_mm = climb(surface, outline, range.lowest_at_mm, step_mm, -1.0);
+  const auto height = [&](const Vec2& p) { return surface.at(p).height_mm; };
+  const auto depth = [&](const Vec2& p) { return -surface.at(p).height_mm; };
+  range.lowest_at_mm = climb(depth, outline, range.lowest_at_mm, step_mm);
   range.lowest_mm = surface.at(range.lowest_at_mm).height_mm;
-  range.highest_at_mm = climb(surface, outline, range.highest_at_mm, step_mm, 1.0);
+  range.highest_at_mm = climb(height, outline, range.highest_at_mm, step_mm);
   range.highest_mm = surface.at(range.highest_at_mm).height_mm;
+  if (surface.is_inclined()) range.inclined_plane = plane_touching(surface, outline, samples, step_mm);
   return range;
 }
 
@@ -278,6 +294,51 @@ void check_folds(const EntranceSurface& surface, const Polygon& outline) {
       check_side(point(i, j), point(i + 1, j));
       check_side(point(i, j), point(i, j + 1));
     }
+}
+
+namespace {
+
+/// Returns the corners of a triangle and points between them, which are at most `spacing_mm` apart.
+std::vector<Vec3> points_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double spacing_mm) {
+  const double longest_mm = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  const int steps = std::max(1, static_cast<int>(std::ceil(longest_mm / spacing_mm)));
+  std::vector<Vec3> points;
+  for (int j = 0; j <= steps; ++j)
+    for (int i = 0; i + j <= steps; ++i) points.push_back(a + (i * (b - a) + j * (c - a)) / steps);
+  return points;
+}
+
+/// Returns points of a facet in the frame of its patch.
+std::vector<Vec3> points_of_facet(const SurfacePatch& patch, const PatchFacet& facet, double spacing_mm) {
+  const auto corner = [&](std::uint32_t k) -> const Vec3& {
+    return patch.vertices[patch.corners[facet.first_corner + k]];
+  };
+  std::vector<Vec3> points;
+  for (std::uint32_t k = 1; k + 1 < facet.corner_count; ++k) {
+    const std::vector<Vec3> own = points_of_triangle(corner(0), corner(k), corner(k + 1), spacing_mm);
+    points.insert(points.end(), own.begin(), own.end());
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<EntranceContact> find_contact(const EntranceSurface& surface, const Part& part) {
+  constexpr double kSpacing = 1.0 / 128.0;
+  const double spacing_mm = kSpacing * bounding_box(part.outline).size().maxCoeff();
+  for (const Placement& placement : part.placements) {
+    const SurfacePatch& patch = part.patches[placement.patch];
+    for (const PatchFacet& facet : patch.facets) {
+      if (facet.role == FacetRole::border_wall || facet.role == FacetRole::side) continue;
+      for (const Vec3& point : points_of_facet(patch, facet, spacing_mm)) {
+        const Vec2 position_mm = point.head<2>() + placement.offset_mm;
+        const double back_mm = point.z() + placement.height_mm;
+        const double entrance_mm = surface.at(position_mm).height_mm;
+        if (!(entrance_mm > back_mm)) return EntranceContact{position_mm, back_mm, entrance_mm};
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 int cells_to_resolve(const EntranceSurface& surface, const Polygon& outline) {

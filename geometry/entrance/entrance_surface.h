@@ -9,6 +9,7 @@
 #include <optional>
 #include <variant>
 
+#include "geometry/part/part.h"
 #include "geometry/part/surface_patch.h"
 #include "geometry/polygon.h"
 #include "geometry/surface/freeform_surface.h"
@@ -85,6 +86,14 @@ using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::share
 /// no face.
 using EntranceHeights = std::function<double(const Vec2& point_mm)>;
 
+/// Plane z = height_mm + slope * (x, y) in the part frame.
+struct TouchingPlane {
+  double height_mm = 0.0;
+  Vec2 slope = Vec2::Zero();
+
+  double at(const Vec2& point_mm) const { return height_mm + slope.dot(point_mm); }
+};
+
 /// Range of heights and slopes of an entrance surface over the outline of a part.
 struct EntranceRange {
   double lowest_mm = 0.0;
@@ -92,12 +101,33 @@ struct EntranceRange {
   Vec2 lowest_at_mm = Vec2::Zero();
   Vec2 highest_at_mm = Vec2::Zero();
   double steepest_slope = 0.0;  ///< maximum slope of all samples
+  /// Plane perpendicular to the axis of an inclined surface that touches the surface from above. It is empty for other
+  /// surfaces, for which the horizontal plane at `highest_mm` has this role.
+  std::optional<TouchingPlane> inclined_plane = {};
+
+  /// Returns the height of the plane that touches the surface from above. The incident beam crosses this plane inside
+  /// the outline of the part.
+  double beam_height_mm(const Vec2& point_mm) const {
+    return inclined_plane ? inclined_plane->at(point_mm) : highest_mm;
+  }
 };
 
 /// Returns the lowest and highest point of an entrance surface within rounding errors. The density of the samples
 /// follows from the size of the smallest features.
 /// \throw InputError if the surface has no finite height somewhere over the outline
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
+
+/// Point at which the back surface of a part is above its entrance surface, or touches it.
+struct EntranceContact {
+  Vec2 position_mm = Vec2::Zero();
+  double back_mm = 0.0;      ///< height of the back surface
+  double entrance_mm = 0.0;  ///< height of the entrance surface
+};
+
+/// Searches for points at which the back of a finite part is not below an exact entrance surface. The vertices of the
+/// back and points between them are checked, at distances of at most 1/128 of the part's size. Returns nothing if there
+/// is no such point. Walls along the border of the part are not checked.
+std::optional<EntranceContact> find_contact(const EntranceSurface& surface, const Part& part);
 
 /// Checks that an inclined surface does not fold over the outline: it must have exactly one point above each point of
 /// the outline, and its normal must be less than 89 degrees from z. The surface is checked at samples and between them.

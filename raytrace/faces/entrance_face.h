@@ -34,12 +34,16 @@ class EntranceFace {
   /// Returns the minimum height over the outline; highest_mm() returns the maximum height.
   double lowest_mm() const { return range_.lowest_mm; }
   double highest_mm() const { return range_.highest_mm; }
+  /// Returns the height of the plane in which the incident beam crosses the outline. The plane touches the surface from
+  /// above. It is horizontal unless the surface is inclined.
+  double beam_height_mm(const Vec2& position_mm) const { return range_.beam_height_mm(position_mm + centre_mm_); }
 
  protected:
-  explicit EntranceFace(const geometry::EntranceRange& range) : range_(range) {}
+  EntranceFace(const geometry::EntranceRange& range, const Vec2& centre_mm) : range_(range), centre_mm_(centre_mm) {}
 
  private:
   geometry::EntranceRange range_;
+  Vec2 centre_mm_;
 };
 
 /// Returns the entrance face for ray tracing.

@@ -36,7 +36,7 @@ double bend_between(const EntranceSurface::SurfaceSample& a, const EntranceSurfa
 
 HeightField::HeightField(std::shared_ptr<const geometry::EntranceSurface> surface, const geometry::Polygon& outline,
                          const Vec2& centre_mm)
-    : EntranceFace(geometry::entrance_range(surface, outline)),
+    : EntranceFace(geometry::entrance_range(surface, outline), centre_mm),
       surface_(std::move(surface)),
       x0_(centre_mm.x()),
       y0_(centre_mm.y()) {

@@ -21,7 +21,7 @@ geometry::Part part_of(const geometry::SurfacePatch& patch, const geometry::Entr
 }  // namespace
 
 MeshEntrance::MeshEntrance(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm)
-    : EntranceFace(geometry::range_of_entrance_mesh(patch, outline)),
+    : EntranceFace(geometry::range_of_entrance_mesh(patch, outline), centre_mm),
       part_(part_of(patch, {lowest_mm(), highest_mm(), {}, {}, 0.0}, outline)),
       surface_(part_, centre_mm) {}
 

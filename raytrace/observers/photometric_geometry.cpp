@@ -79,8 +79,42 @@ ReturnFrame return_frame(const PhotometricGeometry& geometry) {
   return {part_from_lab * Vec3::UnitZ(), part_from_lab * Vec3::UnitX(), part_from_lab * Vec3::UnitY()};
 }
 
-Angle viewing_angle(const PhotometricGeometry& geometry) {
-  return Angle::from_rad(angle_between(Vec3::UnitZ(), directions_of(geometry).to_observer));
+namespace {
+
+bool is_z(const Vec3& axis) {
+  return axis.x() == 0.0 && axis.y() == 0.0;
+}
+
+/// Returns the rotation about a horizontal axis that takes z to the reference axis.
+Eigen::Matrix3d part_from_reference(const Vec3& reference_axis) {
+  const double sine = reference_axis.head<2>().norm();
+  const Vec3 about(-reference_axis.y() / sine, reference_axis.x() / sine, 0.0);
+  return rotation_about(about, Angle::from_rad(std::atan2(sine, reference_axis.z())));
+}
+
+}  // namespace
+
+PhotometricDirections in_part_frame(const PhotometricDirections& directions, const Vec3& reference_axis) {
+  if (is_z(reference_axis)) return directions;
+  const Eigen::Matrix3d rotation = part_from_reference(reference_axis);
+  return {rotation * directions.to_source, rotation * directions.to_observer};
+}
+
+ReturnFrame in_part_frame(const ReturnFrame& frame, const Vec3& reference_axis) {
+  if (is_z(reference_axis)) return frame;
+  const Eigen::Matrix3d rotation = part_from_reference(reference_axis);
+  return {rotation * frame.to_source, rotation * frame.right, rotation * frame.up};
+}
+
+PhotometricDirections in_reference_frame(const PhotometricDirections& directions, const Vec3& reference_axis) {
+  if (is_z(reference_axis)) return directions;
+  const Eigen::Matrix3d rotation = part_from_reference(reference_axis).transpose();
+  return {rotation * directions.to_source, rotation * directions.to_observer};
+}
+
+Angle viewing_angle(const PhotometricGeometry& geometry, const Vec3& reference_axis) {
+  return Angle::from_rad(
+      angle_between(Vec3::UnitZ(), in_part_frame(directions_of(geometry), reference_axis).to_observer));
 }
 
 }  // namespace retrace::raytrace

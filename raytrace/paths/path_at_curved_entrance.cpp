@@ -7,10 +7,10 @@
 namespace retrace::raytrace {
 
 /// Starts a path on the plane that touches the curved entrance face from above. The beam crosses this plane inside the
-/// part's outline.
+/// part's outline. The plane is inclined if the face is inclined.
 void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
   State state;
-  state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->highest_mm()};
+  state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->beam_height_mm(entry_mm)};
   state.direction = -setup_.to_source;
   state.light = setup_.incident;
   state.inside = false;

@@ -84,17 +84,18 @@ void check_film(const CameraRequest& r, bool is_infinite) {
 }
 
 raytrace::CameraScene scene_of(const CameraRequest& r, const std::optional<PhotometricLamp>& lamp,
-                               const geometry::Part& part) {
+                               const geometry::Part& part, const Vec3& reference_axis) {
   raytrace::CameraScene scene;
   const raytrace::PhotometricGeometry geometry =
       raytrace::geometry_from({Angle::from_deg(r.v_deg), Angle::from_deg(r.h_deg)}, Angle::from_deg(r.observation_deg),
                               Angle::from_deg(r.rotation_deg));
-  const raytrace::PhotometricDirections towards = raytrace::directions_of(geometry);
+  const raytrace::PhotometricDirections towards =
+      raytrace::in_part_frame(raytrace::directions_of(geometry), reference_axis);
   const Vec3 target(0.0, 0.0, part.thickness_mm);
   const double distance_mm = 1e3 * r.distance_m;
   scene.view.target_mm = target;
   scene.view.eye_mm = r.eye_mm ? to_vec(*r.eye_mm) : Vec3(target + distance_mm * towards.to_observer);
-  scene.view.up = raytrace::return_frame(geometry).up;
+  scene.view.up = raytrace::in_part_frame(raytrace::return_frame(geometry), reference_axis).up;
   scene.view.columns = r.columns;
   scene.view.rows = r.rows;
   scene.view.width_mm = shown_width(r, part);

@@ -24,8 +24,9 @@ void check_film(const CameraRequest& request, bool is_infinite);
 
 /// Returns the scene of a request.
 /// \param lamp photometric data of the lamp; empty if the request contains its illuminance
+/// \param reference_axis direction H = V = 0 in the part frame
 raytrace::CameraScene scene_of(const CameraRequest& request, const std::optional<PhotometricLamp>& lamp,
-                               const geometry::Part& part);
+                               const geometry::Part& part, const geometry::Vec3& reference_axis);
 
 /// Returns the angle between two vectors.
 double angle_deg(const geometry::Vec3& a, const geometry::Vec3& b);

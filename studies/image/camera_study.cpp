@@ -87,7 +87,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
   dyed_ = with_dye(design_, dye);
   if (!dye.values.empty()) set_where(dyed_, "body.absorption_per_mm", {request_.dye, 0, "absorption_per_mm"});
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
-  scene_ = scene_of(request_, lamp_, model_.part);
+  scene_ = scene_of(request_, lamp_, model_.part, design_.reference_axis());
   scene_.discs = discs;
   check_position(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
   check_position(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");

@@ -146,19 +146,20 @@ PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observa
                                  deg(setting.rotation_deg));
 }
 
-PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions) {
-  const PhotometricGeometry geometry = raytrace::geometry_of(directions);
+PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions, const Vec3& reference_axis) {
+  const PhotometricGeometry geometry = raytrace::geometry_of(raytrace::in_reference_frame(directions, reference_axis));
   const raytrace::EntranceAngles entrance = raytrace::entrance_angles(geometry);
   PhotometerSetting setting;
   setting.v_deg = entrance.v.deg();
   setting.h_deg = entrance.h.deg();
   setting.rotation_deg = geometry.epsilon.deg();
   setting.observation_deg = {geometry.alpha.deg()};
+  setting.reference_axis = reference_axis;
   return setting;
 }
 
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
-  return raytrace::return_frame(geometry_of(setting, 0.0));
+  return raytrace::in_part_frame(raytrace::return_frame(geometry_of(setting, 0.0)), setting.reference_axis);
 }
 
 design::Design with_dye(design::Design design, const materials::SpectralCurve& absorption_per_mm) {
@@ -266,7 +267,8 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
   at.std_error = std::sqrt(variance);
   reading.lacks_diffraction =
       has_diffraction() ? beyond_budget > kMaxUndiffractedFraction : cell_width_mm() < min_undiffracted_mm();
-  const double cos_beta = std::cos(source.incidence.rad());
+  const double cos_beta = design_.inclination() == nullptr ? std::cos(source.incidence.rad())
+                                                           : design_.incident_fraction(frame_of(setting).to_source);
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
@@ -278,8 +280,9 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
       squares += std::pow(weights_[w] * pieces[w].error_per_sr[k], 2.0);
     }
     const PhotometricGeometry geometry = geometry_of(setting, setting.observation_deg[k]);
-    reading.r_a.push_back(raytrace::coefficient_of_retroreflection(per_sr, source.incidence));
-    reading.r_l.push_back(raytrace::coefficient_of_luminance(reading.r_a.back(), raytrace::viewing_angle(geometry)));
+    reading.r_a.push_back(per_sr * cos_beta);
+    reading.r_l.push_back(raytrace::coefficient_of_luminance(
+        reading.r_a.back(), raytrace::viewing_angle(geometry, setting.reference_axis)));
     reading.r_a_error.push_back(cos_beta * std::hypot(std::sqrt(squares), missing));
   }
   if (map.empty()) return reading;

@@ -28,12 +28,16 @@ struct PhotometerSetting {
   std::vector<double> observation_deg;
   std::size_t map_columns = 0;  ///< number of columns of the map; 0: no map
   bool split = false;
+  /// Direction H = V = 0 in the part frame (Design::reference_axis()). Photometer::measure() sets it.
+  geometry::Vec3 reference_axis = geometry::Vec3::UnitZ();
 };
 
 raytrace::PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg);
 /// Returns the setting for one direction of light and one direction of observation.
 /// \param directions directions in the part frame
-PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
+/// \param reference_axis direction H = V = 0 in the part frame
+PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions,
+                             const geometry::Vec3& reference_axis = geometry::Vec3::UnitZ());
 /// Returns the frame of directions around the direction back to the source, in the part frame.
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
@@ -60,8 +64,10 @@ class Photometer {
              PhotometricResponse response = PhotometricResponse::y_bar);
 
   /// Measures all settings. Returns the readings in the order of the settings, or nothing if the measurement was
-  /// cancelled.
-  std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& settings,
+  /// cancelled. The angles of the settings refer to the reference axis of the design.
+  /// \throw InputError if the light of a setting comes from behind the plane z = 0 of a part with an inclined entrance
+  ///     face
+  std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& requested,
                                                         Progress* progress, const Cancellation* cancel) const;
 
   /// Far field at one wavelength, and the weight of this wavelength in the response of the receiver.
@@ -234,6 +240,9 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure_in_one_light(const std::vector<PhotometerSetting>& settings,
                                                                      Progress* progress,
                                                                      const Cancellation* cancel) const;
+  /// Returns the settings with the reference axis of the design.
+  /// \throw InputError if the light of a setting comes from behind the plane z = 0
+  std::vector<PhotometerSetting> with_reference_axis(std::vector<PhotometerSetting> settings) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1

@@ -1,9 +1,12 @@
 // Members of Photometer that choose the traced wavelengths for each direction of light. The choice depends on the
 // knees: the wavelengths at which total reflection begins or ends at a facet.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/number_format.h"
 #include "core/task_progress.h"
 #include "design/total_reflection.h"
 #include "materials/io/material_library.h"
@@ -156,9 +159,23 @@ Photometer Photometer::with_knees(const std::vector<double>& knees_nm) const try
   return *this;  // keeps the old wavelengths: the material has no data at one of the new ones
 }
 
-std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& settings,
+std::vector<PhotometerSetting> Photometer::with_reference_axis(std::vector<PhotometerSetting> settings) const {
+  for (PhotometerSetting& setting : settings) {
+    setting.reference_axis = design_.reference_axis();
+    if (design_.inclination() != nullptr && !(frame_of(setting).to_source.z() > 0.0))
+      throw InputError(
+          design_.where("entrance_surface.incidence_deg"),
+          fmt::format("light from V = {}, H = {} degrees comes from behind the part: the angle between this "
+                      "direction and the axes of the elements must be less than 90 degrees",
+                      shortest(setting.v_deg), shortest(setting.h_deg)));
+  }
+  return settings;
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vector<PhotometerSetting>& requested,
                                                                   Progress* progress,
                                                                   const Cancellation* cancel) const {
+  const std::vector<PhotometerSetting> settings = with_reference_axis(requested);
   std::vector<PhotometerReading> readings(settings.size());
   std::size_t done = 0;
   for (const auto& [knees_nm, indices] : settings_by_knees(settings)) {

@@ -1,0 +1,40 @@
+#pragma once
+
+// Wavelengths of the light of a design, material of its body, and refractive indices.
+
+#include "design/design.h"
+#include "materials/io/material_library.h"
+#include "materials/spectrum.h"
+
+namespace retrace::design {
+
+/// Returns the material of the part: a glass of the design's catalogue, the material of an index record, or a shipped
+/// material.
+/// \throw InputError that names file, line and key, if the material is unknown
+materials::Material material_of(const Design& design, const materials::MaterialLibrary& library);
+
+/// Checks that the data of the material cover the temperature of the design.
+/// \throw InputError at `body.temperature_c` if they do not
+void require_temperature(const Design& design, const materials::Material& material);
+
+/// Returns the index of a material relative to air.
+/// \throw InputError at the key of the wavelength, if the material has no data there
+double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
+                           double wavelength_nm, double temperature_c);
+
+/// Returns the refractive index of the body relative to air.
+/// \param material result of material_of()
+/// \throw InputError if the material has no data at this wavelength, or if the index is less than 1
+double index_of_body(const Design& design, const materials::Material& material, const materials::Material& air,
+                     double wavelength_nm);
+
+/// Returns the wavelengths to trace: every line of the design, or a few wavelengths that represent a lamp.
+/// \throw InputError at `light.spectrum` if a spectrum is not valid
+materials::Spectrum wavelengths_to_trace(const Design& design);
+
+/// Returns the refractive index of the body relative to air at the wavelength of the light. For a spectrum, this is the
+/// centroid.
+/// \throw InputError if the material or the spectrum is not known
+double index_at_centroid(const Design& design);
+
+}  // namespace retrace::design
