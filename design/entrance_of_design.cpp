@@ -8,8 +8,9 @@
 #include "core/atomic_file.h"
 #include "core/named_file.h"
 #include "core/number_format.h"
+#include "design/entrance_form.h"
 #include "design/file_names.h"
-#include "geometry/direction.h"
+#include "geometry/elements/substrate_checks.h"
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/io/surface_tables.h"
@@ -77,19 +78,25 @@ geometry::Entrance mesh_entrance(const EntranceFile& file, double scale, const g
 }
 
 geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Part& part, const Vec3& origin_mm) {
-  const geometry::SurfacePose pose{origin_mm,
-                                   geometry::rotation_about(Vec3::UnitZ(), Angle::from_deg(form.rotation_deg))};
-  auto surface = std::make_shared<const geometry::EntranceSurface>(
-      geometry::FreeformSurface(geometry::height_of(form.shape), std::nullopt, {}, {}), pose);
+  auto surface = surface_of(form, origin_mm);
   geometry::check_folds(*surface, part.outline);
   return surface;
+}
+
+/// Returns the height of the origin of the entrance face. If the elements are placed below the face, z = 0 is the
+/// highest point of the surface at the distance of the wall below the face.
+double origin_height_mm(const geometry::Part& part) {
+  const std::optional<geometry::Substrate>& substrate = part.spec.substrate;
+  if (!substrate || !std::holds_alternative<geometry::OffsetSubstrate>(substrate->shape)) return part.thickness_mm;
+  const Vec2 half_mm = 0.5 * Vec2(part.spec.array.x_length_mm, part.spec.array.y_length_mm);
+  return -geometry::measure_substrate(geometry::substrate_surface_of(part.spec), half_mm).highest_mm;
 }
 
 Vec3 origin_of(const CurvedEntrance& entrance, const geometry::Part& part) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   Vec2 centre = 0.5 * (box.lower + box.upper);
   if (entrance.centre_mm) centre = {(*entrance.centre_mm)[0], (*entrance.centre_mm)[1]};
-  return {centre.x(), centre.y(), part.thickness_mm};
+  return {centre.x(), centre.y(), origin_height_mm(part)};
 }
 
 geometry::Entrance placed_entrance(const Design& design, const geometry::Part& part) {

@@ -150,8 +150,10 @@ void set_substrate(Document& document, const Substrate& substrate) {
                           keys.set_word("axis", cylinder.axis_is_x ? "x" : "y");
                         },
                         [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
-                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); }},
+                        [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); },
+                        [&](const geometry::OffsetSubstrate& offset) { keys.set("wall_mm", offset.wall_mm); }},
              substrate.shape);
+  if (std::holds_alternative<geometry::OffsetSubstrate>(substrate.shape)) return;
   keys.set_word("element_axes", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
 }
 
@@ -282,9 +284,15 @@ Value absorption_value(const Absorption& absorption) {
                     absorption);
 }
 
+/// Returns true if the elements are placed below the entrance surface.
+bool is_below_entrance(const Design& design) {
+  return design.elements() && design.part().substrate &&
+         std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape);
+}
+
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
-  keys.set_positive("thickness_mm", design.thickness_mm());
+  if (!is_below_entrance(design)) keys.set_positive("thickness_mm", design.thickness_mm());
   keys.set_word("material", design.substance.material);
   if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);
   if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);

@@ -127,7 +127,7 @@ const Table kTables[] = {
      .when = kWithOutline},
     {.name = "substrate",
      .meaning = "Surface on which the elements of a finite array are placed, instead of the plane z = 0.",
-     .rows = geometry::substrate_rows(),
+     .rows = geometry::design_substrate_rows(),
      .presence = Presence::optional,
      .when = kWithPlanes,
      .former = "base"},

@@ -12,6 +12,7 @@
 #include "core/message_text.h"
 #include "core/schema/reader.h"
 #include "core/sin_cos.h"
+#include "design/entrance_form.h"
 #include "design/io/design_document.h"
 #include "design/io/design_format.h"
 #include "design/io/entrance_reader.h"
@@ -258,6 +259,7 @@ Design resolved(std::shared_ptr<const Document> given) {
                          document.text("idealisation.entrance") == "lossless"};
   design.document = std::move(given);
   find_pin_angle(design);
+  find_offset(design);
   return design;
 }
 

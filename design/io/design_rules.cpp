@@ -124,6 +124,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
   if (part.array.extent == Extent::infinite) document.fail(key, kNotInfinite);
   if (part.array.arrangement == Arrangement::single)
     document.fail(key, "not allowed for array.arrangement = \"single\"");
+  if (document.text(key) == "offset" && !document.has("entrance_surface.kind"))
+    document.fail(key, "\"offset\" is only allowed together with entrance_surface.kind");
   if (has_outline(document) && part.array.x_offset_mm > 0.0)
     document.fail(key, "not allowed together with outline.margin_mm");
   if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
@@ -302,6 +304,8 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
     document.fail(
         key,
         "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
+  // A substrate below the entrance surface is checked after the surface has been read (find_offset()).
+  if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape)) return;
   try {
     geometry::check_substrate(part);
   } catch (const InputError& error) {
@@ -314,9 +318,10 @@ void check_thickness(const Document& document, const PartSpec& part) {
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
   if (part.thickness_mm < least_mm)
-    document.fail("body.thickness_mm", fmt::format("must be >= {} so that the plate is thicker than the height of the "
-                                                   "rims, {} mm (angle errors and a cant raise the rims), got {}",
-                                                   shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
+    document.fail(document.has("substrate.wall_mm") ? "substrate.wall_mm" : "body.thickness_mm",
+                  fmt::format("must be >= {} so that the plate is thicker than the height of the "
+                              "rims, {} mm (angle errors and a cant raise the rims), got {}",
+                              shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
 }
 
 void check_bowl(const Document& document) {

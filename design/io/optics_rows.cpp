@@ -28,9 +28,14 @@ constexpr Words kForms = {"plane", "poly2", "poly3", "poly4", "poly5", "poly6", 
 constexpr Words kWalls = {"smooth", "absorbing"};
 constexpr Words kFacets = {"-x", "+x"};
 
+constexpr Words kOffsetKind = {"offset"};
+
 constexpr Condition kThicknessOfMesh[] = {is_not(kKind, kBall), is_given("part.mesh")};
 constexpr Condition kThicknessOfOthers[] = {
-    is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has no plate"), is_absent("part.mesh")};
+    is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has no plate"), is_absent("part.mesh"),
+    is_not("substrate.kind", kOffsetKind,
+           "not allowed for substrate.kind = \"offset\", whose elements are substrate.wall_mm below the entrance "
+           "surface")};
 
 constexpr Condition kWithLayerIndex[] = {is_given("refractive_index")};
 constexpr Condition kIndexOfMaterial[] = {
@@ -39,7 +44,7 @@ constexpr Condition kIndexOfMaterial[] = {
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
      "Thickness of the plate between the entrance face and the nominal rims of the elements. With an "
-     "`[entrance_surface]`, it is the height of the origin of the surface's file above the nominal rims.",
+     "`[entrance_surface]`, it is the height of the origin of the surface above the nominal rims.",
      kThicknessOfOthers},
     {"thickness_mm", kSize, kNone,
      "Thickness of the plate. If this key is given, it must equal the thickness of the mesh.", kThicknessOfMesh},

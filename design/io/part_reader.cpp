@@ -102,13 +102,15 @@ PartSpec read_array(const Document& document) {
 PartSpec read_part(const Document& document) {
   PartSpec part = read_array(document);
   if (document.has("substrate"))
-    schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::substrate_rows()}, "substrate",
+    schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::design_substrate_rows()}, "substrate",
                  &part.substrate.emplace());
   read_angle_errors(document, part);
   read_edges(document, part.edges);
   for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)
     part.scratches.push_back(scratch_of(document, schema::path_of_entry("surface.scratches", i)));
-  part.thickness_mm = document.number("body.thickness_mm");
+  // A part below its entrance surface has no thickness_mm. Its highest point is at the height of its wall.
+  part.thickness_mm =
+      document.number_if("body.thickness_mm").value_or(document.number_if("substrate.wall_mm").value_or(0.0));
   return part;
 }
 

@@ -165,6 +165,7 @@ struct ShapeWords {
     return fmt::format("a sphere of radius {} mm", shortest(sphere.radius_mm));
   }
   std::string operator()(const geometry::FormulaSubstrate&) const { return "the job's formula"; }
+  std::string operator()(const geometry::OffsetSubstrate&) const { return "a surface below the entrance surface"; }
 };
 
 }  // namespace

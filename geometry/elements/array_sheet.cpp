@@ -213,6 +213,8 @@ SheetCell SheetPortion::sheet_cell(std::size_t cell, const Vec2& shift_mm) const
   place.shift_mm = shift_mm;
   place.on_sheet = moved(sheet_->lattice.cells[cell].outline, shift_mm);
   place.frame = frame_at(sheet_->reference_points_mm[cell] + shift_mm);
+  if (sheet_->surface && sheet_->surface->is_offset())
+    place.frame.origin.z() = sheet_->surface->lowest_over(moved(place.on_sheet, at_ - sheet_->centre_mm)) - height_;
   place.outline = place.on_sheet;
   if (!sheet_->is_upright)
     for (std::size_t k = 0; k < place.outline.size(); ++k)

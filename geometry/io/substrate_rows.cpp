@@ -1,6 +1,8 @@
 #include "geometry/io/substrate_rows.h"
 
 #include <array>
+#include <iterator>
+#include <utility>
 
 #include "core/error.h"
 #include "core/overloaded.h"
@@ -14,6 +16,8 @@ using namespace schema;
 
 /// Words of the key `kind`, in the order of the alternatives of SubstrateShape.
 constexpr Words kKinds = {"plane", "cylinder", "sphere", "formula"};
+/// Kinds of substrates of designs. Jobs have no entrance surface, and therefore only the kinds in `kKinds`.
+constexpr Words kKindsOfDesign = {"plane", "cylinder", "sphere", "formula", "offset"};
 constexpr Words kAxes = {"x", "y"};
 constexpr Words kElementAxesWords = {"normal", "parallel"};
 constexpr Words kPins = {"pins"};
@@ -22,16 +26,22 @@ constexpr Condition kPlaneOnly[] = {is("kind", only(kKinds, "plane"))};
 constexpr Condition kCylinderOnly[] = {is("kind", only(kKinds, "cylinder"))};
 constexpr Condition kRoundOnly[] = {is("kind", only(kKinds, "cylinder", "sphere"))};
 constexpr Condition kFormulaOnly[] = {is("kind", only(kKinds, "formula"))};
+constexpr Condition kOffsetOnly[] = {is("kind", only(kKindsOfDesign, "offset"))};
 constexpr Condition kOfPins[] = {is("array.arrangement", kPins)};
 constexpr Condition kOfNoPins[] = {is_not("array.arrangement", kPins)};
+constexpr Condition kOfNoPinsOnSurface[] = {
+    is_not("array.arrangement", kPins),
+    is_not("kind", only(kKindsOfDesign, "offset"),
+           "not allowed for substrate.kind = \"offset\", whose elements are parallel to z")};
 
 Value get_kind(const Substrate& substrate) {
   return static_cast<double>(substrate.shape.index());
 }
 void set_kind(Substrate& substrate, const Value& value) {
-  const std::array<SubstrateShape, 4> shapes = {PlaneSubstrate(), CylinderSubstrate(), SphereSubstrate(),
-                                                FormulaSubstrate()};
+  const std::array<SubstrateShape, 5> shapes = {PlaneSubstrate(), CylinderSubstrate(), SphereSubstrate(),
+                                                FormulaSubstrate(), OffsetSubstrate()};
   substrate.shape = shapes[static_cast<std::size_t>(std::get<double>(value))];
+  if (std::holds_alternative<OffsetSubstrate>(substrate.shape)) substrate.element_axes = ElementAxes::parallel;
 }
 
 Value get_radius(const Substrate& substrate) {
@@ -96,7 +106,37 @@ constexpr Row kRows[] = {
                             {nullptr, set_by<set_parallel>},
                             kOfPins})};
 
+/// Index of the row of `element_axes` for elements other than pins.
+constexpr std::size_t kAxesRow = std::size(kRows) - 2;
+constexpr Row kKindRowOfDesign = {
+    "kind", Word{kKindsOfDesign}, kRequired,
+    "Shape of the substrate. `\"offset\"`: below the entrance surface, which must have a `kind`.",
+    access_by<get_kind, set_kind>};
+constexpr Row kWallRow = {
+    "wall_mm",
+    Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+    kRequired,
+    "Minimum thickness of the wall between the nominal rim of an element and the `[entrance_surface]`, measured along "
+    "z over the outline of the element. Each element is placed at the height at which its wall has this thickness. The "
+    "axes of the elements are parallel to z. `body.thickness_mm` is then not needed.",
+    access_in<&Substrate::shape, &OffsetSubstrate::wall_mm>,
+    kOffsetOnly};
+
+/// Returns a row of designs. They have the rows of jobs, with one more kind of substrate.
+constexpr Row row_of_design(std::size_t k) {
+  if (k == 0) return kKindRowOfDesign;
+  return k == kAxesRow ? where(kRows[k], kOfNoPinsOnSurface) : kRows[k];
+}
+constexpr auto kRowsOfDesign = []<std::size_t... k>(std::index_sequence<k...>) {
+  return std::array{row_of_design(k)..., kWallRow};
+}
+(std::make_index_sequence<std::size(kRows)>{});
+
 }  // namespace
+
+std::span<const Row> design_substrate_rows() {
+  return kRowsOfDesign;
+}
 
 std::span<const Row> substrate_rows() {
   return kRows;
@@ -105,6 +145,7 @@ std::span<const Row> substrate_rows() {
 std::string_view substrate_shape_key(const Substrate& substrate) {
   return std::visit(Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
                                [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
+                               [](const OffsetSubstrate&) { return "substrate.wall_mm"; },
                                [](const auto&) { return "substrate.radius_mm"; }},
                     substrate.shape);
 }

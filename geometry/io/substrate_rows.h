@@ -10,9 +10,12 @@
 
 namespace retrace::geometry {
 
-/// Returns the keys of `[substrate]` in designs and jobs, as rows for an object of the type Substrate. The last row is
-/// used only for pins (cube corners at the ends of pins).
+/// Returns the keys of `[substrate]` in jobs, as rows for an object of the type Substrate. The last row is used only
+/// for pins (cube corners at the ends of pins).
 std::span<const schema::Row> substrate_rows();
+
+/// Returns the keys of `[substrate]` in designs. They include those of substrates below an entrance surface.
+std::span<const schema::Row> design_substrate_rows();
 
 /// Returns the key that determines the shape of a substrate, for error messages about the shape.
 std::string_view substrate_shape_key(const Substrate& substrate);

@@ -2,6 +2,8 @@
 
 // Describes the substrate: the surface on which elements are placed instead of the plane z = 0.
 
+#include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <variant>
@@ -35,7 +37,17 @@ struct FormulaSubstrate {
 /// \throw InputError with the position of the error, if the text is not a formula of x and y
 FormulaSubstrate formula_substrate(std::string_view sag_mm);
 
-using SubstrateShape = std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate>;
+/// Surface below an entrance surface. Each element is placed at the height at which the wall between its nominal rim
+/// and the entrance surface, measured along z, is `wall_mm` at its thinnest point. The elements are parallel to z.
+struct OffsetSubstrate {
+  double wall_mm = 0.0;  ///< > 0
+  /// Returns the height of the entrance surface in mm, relative to its origin. The position is relative to the centre
+  /// of the part. It is set after the entrance surface has been read.
+  std::function<double(const Eigen::Vector2d& position_mm)> entrance_mm = {};
+};
+
+using SubstrateShape =
+    std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate, OffsetSubstrate>;
 
 /// Orientation of elements on a substrate.
 enum class ElementAxes {

@@ -15,6 +15,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/overloaded.h"
+#include "geometry/centroid.h"
 #include "geometry/direction.h"
 
 namespace retrace::geometry {
@@ -56,6 +57,27 @@ Sag sag_of(const FormulaSubstrate& formula) {
   Sag sag;
   sag.formula = *formula.sag_mm;
   return sag;
+}
+
+/// An offset substrate is not evaluated as a sag.
+Sag sag_of(const OffsetSubstrate&) {
+  return {};
+}
+
+/// Returns the derivatives of a height from central differences.
+template <class Height>
+Jet jet_by_differences(const Height& height, const Vec2& p, double step) {
+  const auto at = [&](int i, int j) { return height(Vec2(p + step * Vec2(i, j))); };
+  const double middle = at(0, 0);
+  const double xx = at(1, 0) - 2.0 * middle + at(-1, 0);
+  const double yy = at(0, 1) - 2.0 * middle + at(0, -1);
+  const double xy = 0.25 * (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1));
+  return {middle,
+          (at(1, 0) - at(-1, 0)) / (2.0 * step),
+          (at(0, 1) - at(0, -1)) / (2.0 * step),
+          xx / (step * step),
+          xy / (step * step),
+          yy / (step * step)};
 }
 
 /// Returns the point nearest to `p` at which a circular cross section is not yet vertical.
@@ -213,12 +235,51 @@ Jet SubstrateSurface::at(const Vec2& plan) const {
   constexpr double kSteepBeyond = 4.0;
   Vec2 from = short_of_upright(substrate_.shape, plan);
   Jet jet = jet_at(from);
-  if (sag_.formula && (!jet.is_finite() || std::hypot(jet.x, jet.y) >= kSteepBeyond)) {
+  if ((sag_.formula || is_offset()) && (!jet.is_finite() || std::hypot(jet.x, jet.y) >= kSteepBeyond)) {
     from = plan.cwiseMax(-half_mm_).cwiseMin(half_mm_);
     jet = jet_at(from);
   }
   jet.value += jet.x * (plan.x() - from.x()) + jet.y * (plan.y() - from.y());
   return jet;
+}
+
+Jet SubstrateSurface::jet_at(const Vec2& plan) const {
+  constexpr double kStep = 1e-3;  // in element sizes
+  const auto* const offset = std::get_if<OffsetSubstrate>(&substrate_.shape);
+  if (offset == nullptr) return sag_.evaluate(Jet(plan.x(), 1.0, 0.0), Jet(plan.y(), 0.0, 1.0));
+  Jet jet = jet_by_differences(offset->entrance_mm, plan, kStep * size_mm_);
+  jet.value -= offset->wall_mm;
+  return jet;
+}
+
+double SubstrateSurface::lowest_over(const Polygon& plan) const {
+  constexpr int kPointsOfSide = 4;
+  constexpr double kSmallestStep = 1e-7;  // in element sizes
+  const auto height = [&](const Vec2& p) {
+    const auto* const offset = std::get_if<OffsetSubstrate>(&substrate_.shape);
+    const double value = offset != nullptr ? offset->entrance_mm(p) - offset->wall_mm : at(p).value;
+    return std::isfinite(value) ? value : at(p).value;
+  };
+  Vec2 lowest = centroid(plan);
+  double lowest_mm = height(lowest);
+  const auto take = [&](const Vec2& p) {
+    const double value = height(p);
+    if (!(value < lowest_mm)) return false;
+    lowest_mm = value;
+    lowest = p;
+    return true;
+  };
+  for (std::size_t k = 0; k < plan.size(); ++k)
+    for (int i = 0; i < kPointsOfSide; ++i)
+      take(plan[k] + (static_cast<double>(i) / kPointsOfSide) * (plan[(k + 1) % plan.size()] - plan[k]));
+  // Searches in decreasing steps along the axes (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
+  for (double step = 0.125 * size_mm_; step > kSmallestStep * size_mm_;) {
+    bool moved = false;
+    for (const Vec2& way : {Vec2(step, 0.0), Vec2(-step, 0.0), Vec2(0.0, step), Vec2(0.0, -step)})
+      moved = (contains(plan, lowest + way, 0.0) && take(lowest + way)) || moved;
+    if (!moved) step *= 0.5;
+  }
+  return lowest_mm;
 }
 
 Vec3 SubstrateSurface::normal_at(const Vec2& plan) const {
@@ -242,7 +303,8 @@ Vec2 SubstrateSurface::plan_of(const Vec2& arc) const {
                  [&](const FormulaSubstrate&) {
                    const double y = tables().along_y.place_at(arc.y(), middle_slope(*this));
                    return Vec2(tables().row(*this, y).place_at(arc.x(), row_slope(*this, y)), y);
-                 }},
+                 },
+                 [&](const OffsetSubstrate&) { return arc; }},
       substrate_.shape);
 }
 
@@ -262,7 +324,8 @@ Vec2 SubstrateSurface::arc_of(const Vec2& plan) const {
           [&](const FormulaSubstrate&) {
             return Vec2(tables().row(*this, plan.y()).arc(plan.x(), row_slope(*this, plan.y())),
                         tables().along_y.arc(plan.y(), middle_slope(*this)));
-          }},
+          },
+          [&](const OffsetSubstrate&) { return plan; }},
       substrate_.shape);
 }
 

@@ -40,6 +40,10 @@ class SubstrateSurface {
   /// undefined, the surface is continued along its tangent.
   Jet at(const Vec2& plan) const;
   Vec3 normal_at(const Vec2& plan) const;
+  /// Returns the lowest height over a convex polygon in plan.
+  double lowest_over(const Polygon& plan) const;
+  /// Returns true if elements are placed below an entrance surface, at the lowest height over their outline.
+  bool is_offset() const { return std::holds_alternative<OffsetSubstrate>(substrate_.shape); }
 
   /// Returns the position in plan for arc coordinates. The two are equal if the elements are parallel to z.
   Vec2 plan_of(const Vec2& arc) const;
@@ -61,7 +65,7 @@ class SubstrateSurface {
   struct ArcTables;
   ArcTables& tables() const;
 
-  Jet jet_at(const Vec2& plan) const { return sag_.evaluate(Jet(plan.x(), 1.0, 0.0), Jet(plan.y(), 0.0, 1.0)); }
+  Jet jet_at(const Vec2& plan) const;
 
   Substrate substrate_;
   Sag sag_;

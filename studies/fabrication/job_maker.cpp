@@ -315,6 +315,8 @@ void check_substrate(const design::Design& design, const JobRequest& request) {
     throw InputError(
         {design.source_name(), 0, "array.arrangement"},
         "must be \"honeycomb\" for a job, because pins are not cut but ground one by one and bundled, got \"pins\"");
+  if (std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape))
+    throw InputError(design.where("substrate.kind"), "must not be \"offset\" for a job");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
     throw InputError(Field{"workpiece"},
                      "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));
