@@ -15,7 +15,7 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/limits_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_colour_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/temperature_test.cpp ${CMAKE_CURRENT_LIST_DIR}/glass_of_design_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/photometry_verdict_test.cpp ${CMAKE_CURRENT_LIST_DIR}/form_of_design_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/entrance_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_first_answer_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/entrance_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/inclined_entrance_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_first_answer_test.cpp
   LIBRARIES retrace::photometry retrace::inspect retrace::rre nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/zones_test.cpp ${CMAKE_CURRENT_LIST_DIR}/former_keys_test.cpp
