@@ -84,6 +84,42 @@ TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
       EXPECT_NEAR(formula["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
 }
 
+// A surface that is given by its kind is the turned part of the same surface, along the same random numbers.
+TEST_F(Entrance, KindIsTheTurnedPartOfTheSameSurface) {
+  const std::string prisms =
+      "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
+  const std::string formula = "0.02*cos(5*x)*sin(4*y) - (x^2 + 2*y^2)/9";
+  const std::pair<std::string, std::string> pairs[] = {
+      {kCap, "kind = \"sphere\"\nradius_mm = 3\n"},
+      {"kind = \"conic\"\nradius_mm = 2\nconic = -0.7\n", "kind = \"sphere\"\nradius_mm = -2\nconic = -0.7\n"},
+      {"kind = \"formula\"\nformula = \"sqrt(4 - x^2) - 2\"\n", "kind = \"cylinder\"\nradius_mm = 2\n"},
+      {"kind = \"formula\"\nformula = \"sqrt(4 - y^2) - 2\"\n",
+       "kind = \"cylinder\"\nradius_mm = 2\nrotation_deg = 90\n"},
+      {"kind = \"formula\"\nformula = \"-(x^2/3 + y^2/4)/(1 + sqrt(1 - x^2/9 - y^2/16))\"\n",
+       "kind = \"biconic\"\nradii_mm = [3, 4]\n"},
+      {"kind = \"formula\"\nformula = \"" + formula + "\"\n", "kind = \"formula\"\nformula = \"" + formula + "\"\n"}};
+  const Arguments how = {"--samples", "4096", "--incidence=0,25", "--azimuth=20"};
+  for (const auto& [base, kind] : pairs) {
+    folder_.write("lens.toml", turned(base));
+    const Json file = rre(prisms + kFront + kBody, how);
+    const Json keys = rre(prisms + "[entrance_surface]\n" + kind + kBody, how);
+    for (std::size_t k = 0; k < 2; ++k)
+      for (const auto& [account, power] : file["points"][k]["ledger"].items())
+        EXPECT_NEAR(keys["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-6) << kind << account;
+  }
+}
+
+TEST_F(Entrance, InspectDescribesASurfaceByItsKind) {
+  folder_.write("design.toml", kPlate + "[entrance_surface]\nkind = \"sphere\"\nradius_mm = 3\n" + kBody);
+  const Outcome outcome = retrace(folder_, {"inspect", "design.toml", "-o", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("entrance surface    sphere, z = "), std::string::npos) << outcome.out;
+  const Json json = folder_.json("out/inspect.json");
+  EXPECT_NEAR(json["entrance_surface"]["highest_mm"].get<double>(), 1.2, 1e-12);
+  EXPECT_NEAR(json["entrance_surface"]["lowest_mm"].get<double>(), 1.2 - 3.0 + std::sqrt(9.0 - 0.25 - 0.16), 1e-12);
+  EXPECT_EQ(json["design"]["entrance_surface"]["radius_mm"], 3.0);
+}
+
 using Vector = std::array<double, 3>;
 
 double dot(const Vector& a, const Vector& b) {

@@ -148,14 +148,14 @@ TEST(InclinedEntrance, KeysThatMakeNoSenseAreRefused) {
 TEST(InclinedEntrance, SurfacesThatDoNotFitAreRefused) {
   const auto at = [](const std::string& keys) { return refused(kCubes + surface(keys) + kThick); };
   // Through the elements, folded, not finite.
-  EXPECT_EQ(at("kind = \"sphere\"\nradius_mm = 19\n"), "d.toml:10: entrance_surface.radius_mm");
+  EXPECT_EQ(at("kind = \"sphere\"\nradius_mm = 18.2\n"), "d.toml:10: entrance_surface.radius_mm");
   EXPECT_EQ(at("kind = \"plane\"\nincidence_deg = 60\npin_angle_deg = 50\n"), "d.toml:9: entrance_surface.kind");
   EXPECT_EQ(at("kind = \"formula\"\nformula = \"sin(2*x)\"\nincidence_deg = 50\npin_angle_deg = 40\n"),
             "d.toml:10: entrance_surface.formula");
   EXPECT_EQ(at("kind = \"formula\"\nformula = \"log(x)\"\n"), "d.toml:10: entrance_surface.formula");
   EXPECT_EQ(refused(kCubes + kBelow + kBody), "d.toml:9: substrate.kind");
   EXPECT_EQ(refused(kCubes + surface("kind = \"sphere\"\nradius_mm = 90\n") + kBelow + kThick),
-            "d.toml:15: body.thickness_mm");
+            "d.toml:16: body.thickness_mm");
   EXPECT_EQ(refused(kCubes + surface("kind = \"formula\"\nformula = \"sin(2*x)/2\"\n") + kBelow + kBody),
             "d.toml:13: substrate.wall_mm");
 }
@@ -203,7 +203,7 @@ TEST(InclinedEntrance, PinsReturnTheLightOfTheReferenceAxis) {
   const double reflectance = fresnel_reflectance(45.0 * kDegree, 1.49);
   const double rre = traced(model_of(text), read(text).reference_axis(), 0.1, 16384).rre;
   EXPECT_LT(rre, 1.0 - reflectance);
-  EXPECT_GT(rre, 0.9 * (1.0 - reflectance) * (1.0 - reflectance));
+  EXPECT_GT(rre, 0.85 * (1.0 - reflectance) * (1.0 - reflectance));
 }
 
 // Curved and inclined surfaces in front of elements lose no light.
@@ -222,32 +222,43 @@ TEST(InclinedEntrance, LedgersAddUpToOne) {
   }
 }
 
-// For each complete element, the smallest distance along z between its rim and the surface is the wall.
+/// Returns the smallest distance along z between the corners of the retro facets of a cell and the surface.
+double wall_of_cell(const geometry::EntranceSurface& face, const geometry::SurfacePatch& patch,
+                    const geometry::PatchCell& cell, const geometry::Placement& placement) {
+  double thinnest_mm = 1e9;
+  for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+    const geometry::PatchFacet& facet = patch.facets[f];
+    for (std::uint32_t k = 0; k < facet.corner_count && facet.role == geometry::FacetRole::retro_facet; ++k) {
+      const Vec3& corner = patch.vertices[patch.corners[facet.first_corner + k]];
+      const Vec2 position_mm = corner.head<2>() + placement.offset_mm;
+      thinnest_mm = std::min(thinnest_mm, face.at(position_mm).height_mm - corner.z() - placement.height_mm);
+    }
+  }
+  return thinnest_mm;
+}
+
+// The rims of a prism are on the plane of its nominal rim. Over a convex surface, the wall is thinnest at a corner of
+// the prism.
 TEST(InclinedEntrance, WallsHaveTheGivenThickness) {
+  const std::string prisms =
+      "[element]\nkind = \"rtp\"\nbase_mm = 2\nwidth_mm = 2\n[array]\nx_length_mm = 30\ny_length_mm = 20\n";
   const std::string text =
-      kCubes + surface("kind = \"sphere\"\nradius_mm = 50\nincidence_deg = 20\nazimuth_deg = 30\n") + kBelow + kBody;
+      prisms + surface("kind = \"sphere\"\nradius_mm = 50\nincidence_deg = 20\nazimuth_deg = 30\n") + kBelow + kBody;
   const design::OpticalModel model = model_of(text);
   const auto& face = *std::get<std::shared_ptr<const geometry::EntranceSurface>>(*model.entrance);
-  const geometry::EntranceRange range = geometry::entrance_range(*model.entrance, model.part.outline);
-  EXPECT_NEAR(range.highest_mm, 2.0, 1e-2);  // the highest of 129 x 129 points
+  EXPECT_NEAR(geometry::entrance_range(*model.entrance, model.part.outline).highest_mm, 2.0, 1e-2);
   EXPECT_EQ(model.part.thickness_mm, 2.0);
-  double thinnest = 1e9;
   int elements = 0;
   for (const geometry::Placement& placement : model.part.placements) {
     const geometry::SurfacePatch& patch = model.part.patches[placement.patch];
-    for (const geometry::PatchFacet& facet : patch.facets)
-      for (std::uint32_t k = 0; k < facet.corner_count && facet.role == geometry::FacetRole::retro_facet; ++k) {
-        const Vec3& corner = patch.vertices[patch.corners[facet.first_corner + k]];
-        const Vec2 p = corner.head<2>() + placement.offset_mm;
-        thinnest = std::min(thinnest, face.at(p).height_mm - corner.z() - placement.height_mm);
-        ++elements;
-      }
+    for (const geometry::PatchCell& cell : patch.cells) {
+      const double wall_mm = wall_of_cell(face, patch, cell, placement);
+      if (wall_mm == 1e9) continue;
+      EXPECT_NEAR(wall_mm, 2.0, 1e-6);
+      ++elements;
+    }
   }
-  EXPECT_GT(elements, 100);
-  // Three corners of the rim of a full cube are at the height of the nominal rim, so the wall is reached at one of them
-  // if the surface is lowest there. Otherwise it is slightly thicker at the corners.
-  EXPECT_GE(thinnest, 2.0 - 1e-9);
-  EXPECT_LT(thinnest, 2.2);
+  EXPECT_EQ(elements, 150);
 }
 
 // The directions of photometry refer to the reference axis. Conversion to the part frame and back changes nothing.
