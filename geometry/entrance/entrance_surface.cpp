@@ -202,6 +202,9 @@ Vec3 EntranceSurface::normal_of(const Vec2& slope) const {
 std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Vec2& across_mm, double z_mm) const {
   constexpr int kMaxSteps = 40;
   constexpr double kSmallStep = 1e-12;  // relative to the distance from the origin
+  // Steps that no longer decrease are rounding errors of the height if they are smaller than this value.
+  constexpr double kRoundingMm = 1e-6;
+  double previous_mm = INFINITY;
   for (int k = 0; k < kMaxSteps; ++k) {
     const Vec3 local = pose_.part_from_surface.transpose() * Vec3(across_mm.x(), across_mm.y(), z_mm);
     const jets::Gradient height = gradient_at(local.head<2>());
@@ -211,7 +214,10 @@ std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Ve
     const double step = (height.value - local.z()) / normal.z();
     if (!std::isfinite(step)) return std::nullopt;
     z_mm += step;
-    if (std::abs(step) > kSmallStep * (across_mm.norm() + std::abs(z_mm))) continue;
+    const double size_mm = std::abs(step);
+    const bool is_rounding = size_mm >= 0.5 * previous_mm && size_mm < kRoundingMm;
+    previous_mm = size_mm;
+    if (size_mm > kSmallStep * (across_mm.norm() + std::abs(z_mm)) && !is_rounding) continue;
     if (normal.z() < kMinUpward * normal.norm()) return std::nullopt;
     return Crossing{z_mm, local.head<2>(), slope};
   }
