@@ -88,6 +88,14 @@ std::optional<GlassCatalogueFile> with_absolute_path(const std::optional<GlassCa
   return GlassCatalogueFile{file.string(), file};
 }
 
+OutlineKeys with_absolute_path(OutlineKeys outline) {
+  if (outline.dxf.empty()) return outline;
+  outline.dxf = fs::absolute(outline.dxf).lexically_normal();
+  for (auto& [key, value] : outline.values)
+    if (key == "dxf") value = outline.dxf.string();
+  return outline;
+}
+
 std::string_view Design::entrance_key() const {
   return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
 }

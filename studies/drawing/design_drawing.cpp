@@ -106,8 +106,11 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   PlanPanel panel;
   panel.title = title;
   panel.outline_mm = part.outline;
-  if (part.spec.array.outline && !part.spec.array.outline->is_box())
-    panel.outline_mm = part.spec.array.outline->whole.borders.front();
+  if (const auto& outline = part.spec.array.outline; outline && !outline->is_box()) {
+    const std::vector<geometry::PolygonLoop>& borders = outline->whole.borders;
+    panel.outline_mm = borders.front();
+    panel.holes_mm.assign(borders.begin() + 1, borders.end());
+  }
   if (faces_near(part, window) <= kMaxPlanFaces)
     panel.view = plan_view(part, window);
   else

@@ -8,6 +8,7 @@
 
 #include "core/warning.h"
 #include "design/design.h"
+#include "geometry/outline/outline.h"
 #include "studies/drawing/part_views.h"
 
 namespace retrace::studies {
@@ -41,7 +42,9 @@ struct PlanPanel {
   std::string title;
   PlanView view;
   bool omits_faces = false;      ///< true: there are too many faces to draw
-  geometry::Polygon outline_mm;  ///< outline of the part; empty if the part continues in all directions
+  /// Outer border of the part, counter-clockwise. Empty if the part continues in all directions.
+  geometry::PolygonLoop outline_mm;
+  std::vector<geometry::PolygonLoop> holes_mm = {};  ///< borders of holes, clockwise
   std::optional<geometry::Rectangle> period_mm;
   std::optional<geometry::Rectangle> detail_mm;  ///< window of the detail that another panel shows
   std::optional<double> circle_radius_mm;  ///< radius of the circle around the aperture of the dimensioned element
