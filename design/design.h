@@ -139,8 +139,8 @@ struct FacetPlanesFile {
 
 /// Description of an outline: the keys of the table [outline].
 struct OutlineKeys {
-  /// Given keys with their values, in the order of the format. Margin and tolerance are part of geometry::PlanRegion and
-  /// are not included.
+  /// Given keys with their values, in the order of the format. Margin and tolerance are part of geometry::PlanRegion
+  /// and are not included.
   std::vector<std::pair<std::string, schema::Value>> values;
   /// Path of the DXF file, relative to the working directory; empty without a file.
   std::filesystem::path dxf;
@@ -153,7 +153,7 @@ OutlineKeys with_absolute_path(OutlineKeys outline);
 struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;   ///< planes of individual facets; only for finite parts without a mask
+  std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
   /// Keys that determine `part.array.outline`. If they are empty, a document of the design contains the outline with
   /// all its arcs.
   OutlineKeys outline = {};
@@ -400,8 +400,6 @@ struct Capabilities {
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;
-  bool outlines = true;
-  bool notches = true;  ///< outlines with notches or holes are supported; only used if `outlines`
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

@@ -85,7 +85,7 @@ void set_borders(Keys& keys, const geometry::PlanRegion& plan) {
     corners.push_back({side.from_mm.x(), side.from_mm.y()});
     sagitta.push_back(0.5 * side.bulge * side.chord_mm());
   }
-  if (corners.size() == 2) {  // two half circles
+  if (geometry::is_circle(plan.outline.loops.front())) {
     const geometry::OutlineSide& half = plan.outline.loops.front().front();
     keys.set("circle_mm", std::vector{half.centre_mm().x(), half.centre_mm().y(), half.radius_mm()});
   } else {

@@ -75,9 +75,7 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("form", "not allowed together with [form]"),
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
-constexpr Condition kWithOutline[] = {kNoMesh,
-                                      kNoPlate,
-                                      kTableOfNoBall,
+constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
                                       is_not(kArrangement, kSingle, "not allowed for array.arrangement = \"single\""),
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
 constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};

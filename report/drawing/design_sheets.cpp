@@ -112,7 +112,9 @@ void draw_zones(SvgGroup& group, const PlanPanel& panel, const ToPaper& at) {
     if (panel.omits_faces)
       for (const Polygon& region : panel.zones[k].regions_mm)
         group.faces("zone " + zone_style(k), {on_paper(region, at)});
-    for (const Polygon& region : panel.zones[k].regions_mm) group.outline("zone-border", on_paper(region, at));
+    if (panel.zones[k].sides_mm.empty())
+      for (const Polygon& region : panel.zones[k].regions_mm) group.outline("zone-border", on_paper(region, at));
+    group.lines("zone-border", on_paper(panel.zones[k].sides_mm, at));
   }
   for (std::size_t k = 0; k < panel.zones.size(); ++k)
     for (const Vec2& label : panel.zones[k].labels_mm) {
@@ -168,7 +170,8 @@ Panel plan_panel(const PlanPanel& panel) {
   const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - origin.x()), scale * (origin.y() - p.y())}; };
   Panel result{{}, place_of(origin, scale, "y")};
   SvgGroup& group = result.group;
-  if (panel.omits_faces && !panel.outline_mm.empty()) group.faces("plain", borders_on_paper(panel.outline_mm, panel, at));
+  if (panel.omits_faces && !panel.outline_mm.empty())
+    group.faces("plain", borders_on_paper(panel.outline_mm, panel, at));
   const bool fine = has_fine_lines(panel.view, scale);
   if (fine) result.attributes += " class=\"fine\"";
   draw_faces(group, panel.view, at);
