@@ -10,7 +10,6 @@
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
 #include "geometry/io/substrate_rows.h"
-#include "geometry/outline/plan_region.h"
 
 namespace retrace::design {
 
@@ -105,6 +104,14 @@ std::string_view shape_key_of(const EntranceForm& form) {
 
 }  // namespace
 
+OutlineKeys with_absolute_path(OutlineKeys outline) {
+  if (outline.dxf.empty()) return outline;
+  outline.dxf = fs::absolute(outline.dxf).lexically_normal();
+  for (auto& [key, value] : outline.values)
+    if (key == "dxf") value = outline.dxf.string();
+  return outline;
+}
+
 std::string_view Design::entrance_key() const {
   if (entrance && entrance->form() != nullptr) return shape_key_of(*entrance->form());
   return entrance && entrance->is_mesh() ? "entrance_surface.mesh" : "entrance_surface.turned_part";
@@ -144,27 +151,6 @@ double Design::thickness_mm() const {
                     shape);
 }
 
-namespace {
-
-/// Checks that a study supports the outline of a part.
-/// \param outline outline of the part, or null
-void require_outline_supported(const Design& design, const geometry::PlanRegion* outline,
-                               const Capabilities& capabilities) {
-  if (outline == nullptr) return;
-  if (!capabilities.outlines)
-    throw InputError(
-        design.where("outline"),
-        fmt::format("{} is not available for a part with an [outline], only for a rectangle along the axes",
-                    capabilities.what));
-  if (!outline->is_convex() && !capabilities.notches)
-    throw InputError(
-        design.where("outline"),
-        fmt::format("{} is not available for an [outline] with notches or holes, only for a convex outline",
-                    capabilities.what));
-}
-
-}  // namespace
-
 void require_supported(const Design& design, const Capabilities& capabilities) {
   const std::string what(capabilities.what);
   const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
@@ -180,7 +166,6 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                             throw InputError(
                                 design.where(geometry::substrate_shape_key(*array.part.substrate)),
                                 what + " is not available for elements on a [substrate], only for elements on a plane");
-                          require_outline_supported(design, array.part.array.outline.get(), capabilities);
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },

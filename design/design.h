@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,7 +20,6 @@
 #include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
 #include "geometry/entrance/entrance_shape.h"
-#include "geometry/io/dxf_outline.h"
 #include "geometry/part/zones.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
@@ -138,19 +138,26 @@ struct FacetPlanesFile {
   std::shared_ptr<const geometry::FacetPlanes> planes = {};
 };
 
-/// DXF file with the outline of a part. It is read together with the design.
-struct OutlineFile {
-  std::string name;            ///< name of the file, as given
-  std::filesystem::path file;  ///< path of the file, relative to the working directory
-  geometry::DxfSelection selection;
+/// Description of an outline: the keys of the table [outline].
+struct OutlineKeys {
+  /// Given keys with their values, in the order of the format. Margin and tolerance are part of geometry::PlanRegion
+  /// and are not included.
+  std::vector<std::pair<std::string, schema::Value>> values;
+  /// Path of the DXF file, relative to the working directory; empty without a file.
+  std::filesystem::path dxf;
 };
+
+/// Returns the keys with an absolute name of the DXF file, for designs that are written to another folder.
+OutlineKeys with_absolute_path(OutlineKeys outline);
 
 /// Array of elements, the plate in front of them, and differences between individual elements.
 struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;   ///< planes of individual facets; only for finite parts without a mask
-  std::optional<OutlineFile> outline_file = {};  ///< file that determines `part.array.outline`
+  std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
+  /// Keys that determine `part.array.outline`. If they are empty, a document of the design contains the outline with
+  /// all its arcs.
+  OutlineKeys outline = {};
 };
 
 /// Part whose shape is given by a mesh.
@@ -189,6 +196,7 @@ struct ZonedPart {
   std::vector<std::vector<ZoneChange>> changes;  ///< changes of each zone
   std::vector<ElementsOfZone> elements;          ///< elements of each zone; empty if the zones are regions
   geometry::ZonedSpec spec;                      ///< zones in detail; part_of_design() adds the cells that masks select
+  OutlineKeys outline = {};                      ///< keys that determine `spec.outline`
 
   bool has_masks() const {
     return std::ranges::any_of(elements, [](const ElementsOfZone& of_zone) { return of_zone.mask.has_value(); });
@@ -427,8 +435,6 @@ struct Capabilities {
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;
-  bool outlines = true;
-  bool notches = true;  ///< outlines with notches or holes are supported; only used if `outlines`
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

@@ -76,24 +76,16 @@ void set_element(Document& document, const Element& element) {
       element);
 }
 
-/// Writes the file of an outline, or the outline with all its arcs in the part frame.
-void set_outline(Document& document, const geometry::PlanRegion& plan, const std::optional<OutlineFile>& file) {
-  Keys keys(document, "outline");
-  keys.set("margin_mm", plan.margin_mm);
-  keys.set("tolerance_mm", plan.tolerance_mm);
-  if (file) {
-    keys.set_word("dxf", file->name);
-    if (!file->selection.layer.empty()) keys.set_word("dxf_layer", file->selection.layer);
-    if (file->selection.scale) keys.set("dxf_scale", *file->selection.scale);
-    return;
-  }
+/// Writes an outline with all its arcs, in the part frame.
+/// \pre all holes are round
+void set_borders(Keys& keys, const geometry::PlanRegion& plan) {
   std::vector<std::vector<double>> corners;
   std::vector<double> sagitta;
   for (const geometry::OutlineSide& side : plan.outline.loops.front()) {
     corners.push_back({side.from_mm.x(), side.from_mm.y()});
     sagitta.push_back(0.5 * side.bulge * side.chord_mm());
   }
-  if (corners.size() == 2) {  // two half circles
+  if (geometry::is_circle(plan.outline.loops.front())) {
     const geometry::OutlineSide& half = plan.outline.loops.front().front();
     keys.set("circle_mm", std::vector{half.centre_mm().x(), half.centre_mm().y(), half.radius_mm()});
   } else {
@@ -109,9 +101,18 @@ void set_outline(Document& document, const geometry::PlanRegion& plan, const std
   if (!holes.empty()) keys.set("holes_mm", std::move(holes));
 }
 
+/// Writes an outline: its keys as they were given, or its borders.
+void set_outline(Document& document, const geometry::PlanRegion& plan, const OutlineKeys& given) {
+  Keys keys(document, "outline");
+  keys.set("margin_mm", plan.margin_mm);
+  keys.set("tolerance_mm", plan.tolerance_mm);
+  for (const auto& [key, value] : given.values) keys.set(key, value);
+  if (given.values.empty()) set_borders(keys, plan);
+}
+
 void set_array(Document& document, const ElementArray& elements) {
   const PartSpec& part = elements.part;
-  if (part.array.outline) set_outline(document, *part.array.outline, elements.outline_file);
+  if (part.array.outline) set_outline(document, *part.array.outline, elements.outline);
   Keys keys(document, "array");
   keys.set_word("arrangement", word_of(part));
   if (part.array.arrangement == Arrangement::single) return;
@@ -229,7 +230,7 @@ void set_shape(Document& document, const Design& design) {
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
                         [&](const ZonedPart& part) {
                           set_element(document, part.base.element);
-                          set_array(document, {part.base, {}, {}});
+                          set_array(document, {part.base, {}, {}, part.outline});
                           set_zones(document, part);
                         },
                         [&](const raytrace::BallLayer& balls) { set_balls(document, balls); }},

@@ -75,14 +75,9 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("form", "not allowed together with [form]"),
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
-constexpr Condition kWithOutline[] = {kNoMesh,
-                                      kNoPlate,
-                                      kTableOfNoBall,
+constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
                                       is_not(kArrangement, kSingle, "not allowed for array.arrangement = \"single\""),
-                                      is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\""),
-                                      is_absent("zone", "not allowed together with [[zone]]"),
-                                      is_absent("array.mask", "not allowed together with array.mask"),
-                                      is_absent("part.facets", "not allowed together with facets in [part]")};
+                                      is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
 constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};
 constexpr Rule kOutlineRules[] = {OneOf{
     kOutlineBorders, "must contain exactly one of the keys polygon_mm, circle_mm and dxf, which determine its border"}};

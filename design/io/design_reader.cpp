@@ -38,7 +38,7 @@ PartMesh read_mesh(const Document& document) {
 }
 
 ElementArray read_elements(const Document& document) {
-  ElementArray array = {read_part(document), {}, {}, outline_file(document)};
+  ElementArray array = {read_part(document), {}, {}, outline_keys(document)};
   if (constexpr std::string_view mask = "array.mask"; document.has(mask))
     array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
   if (constexpr std::string_view facets = "part.facets"; document.has(facets))

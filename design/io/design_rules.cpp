@@ -132,13 +132,11 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that tables that need a convex outline without holes are used only with such an outline.
+/// Checks that a curved entrance face is used only with a convex outline without holes.
 void check_outline(const Document& document, const PartSpec& part) {
-  if (!part.array.outline || part.array.outline->is_convex()) return;
-  for (const std::string_view table : {"entrance_surface", "wet_back"})
-    if (document.has(table))
-      document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
-                    fmt::format("must be a convex outline without holes if the design has a table [{}]", table));
+  if (!part.array.outline || part.array.outline->is_convex() || !document.has("entrance_surface")) return;
+  document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
+                "must be a convex outline without holes if the design has a table [entrance_surface]");
 }
 
 constexpr std::string_view kDihedralError = "surface.dihedral_error_arcmin";
@@ -447,7 +445,7 @@ constexpr schema::Rule kRules[] = {
         "An outline must not cross or touch itself. Its holes must be inside it and apart from each other. The "
         "arcs of its corners must fit between their neighbours, and the margin must leave one connected area "
         "for elements. An outline that is not convex, or has holes, is not allowed together with "
-        "`[entrance_surface]` or `[wet_back]`.",
+        "`[entrance_surface]`.",
         check_by<of_array<check_outline>>},
     schema::Check{
         kArrayOnSubstrateKeys,

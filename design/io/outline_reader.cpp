@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/number_format.h"
+#include "design/io/design_rows.h"
 #include "geometry/io/dxf_outline.h"
 
 namespace retrace::design {
@@ -79,7 +80,9 @@ OutlineLoop circle_of(const Document& document, std::string_view key, const std:
 /// Returns the border of the outline. It is followed by the holes if the outline comes from a DXF file.
 std::vector<OutlineLoop> border_of(const Document& document) {
   if (document.has(kDxf)) {
-    const auto [name, file, selection] = *outline_file(document);
+    const std::filesystem::path file = document.file(kDxf);
+    const geometry::DxfSelection selection = {document.text_if("outline.dxf_layer"),
+                                              document.number_if("outline.dxf_scale")};
     return geometry::parse_dxf_outline(read_file(file, geometry::kMaxDxfBytes), file.string(), selection);
   }
   if (document.has(kCircle)) return {circle_of(document, kCircle, document.numbers(kCircle))};
@@ -106,13 +109,15 @@ std::string_view outline_key(const Document& document) {
   return document.has(kDxf) ? kDxf : document.has(kCircle) ? kCircle : kPolygon;
 }
 
-std::optional<OutlineFile> outline_file(const Document& document) {
-  if (!document.has(kDxf)) return std::nullopt;
-  OutlineFile file{document.text(kDxf), document.file(kDxf), {}};
-  if (constexpr std::string_view layer = "outline.dxf_layer"; document.has(layer))
-    file.selection.layer = document.text(layer);
-  file.selection.scale = document.number_if("outline.dxf_scale");
-  return file;
+OutlineKeys outline_keys(const Document& document) {
+  OutlineKeys keys;
+  for (const schema::Row& row : outline_rows()) {
+    const std::string path = schema::path_in("outline", row.key);
+    if (document.has(path) && path != kMargin && path != kTolerance)
+      keys.values.emplace_back(row.key, document.value(path));
+  }
+  if (document.has(kDxf)) keys.dxf = document.file(kDxf);
+  return keys;
 }
 
 PlanRegion read_outline(const Document& document) {

@@ -2,7 +2,6 @@
 
 // Reads the table [outline] of a design.
 
-#include <optional>
 #include <string_view>
 
 #include "core/schema/document.h"
@@ -16,14 +15,13 @@ bool has_outline(const schema::Document& document);
 /// Returns the key that contains the border of the outline.
 std::string_view outline_key(const schema::Document& document);
 
-/// Returns the file that contains the outline, or nothing if the outline is given by keys.
-std::optional<OutlineFile> outline_file(const schema::Document& document);
+/// Returns the keys that describe the outline. They are empty if the part has no outline.
+OutlineKeys outline_keys(const schema::Document& document);
 
 /// Reads the outline of a part, and its DXF file.
 /// \pre has_outline()
 /// \throw InputError if the outline is open or crosses itself, if a hole is outside, or if a radius or the margin is
-/// too
-///     large
+///     too large
 geometry::PlanRegion read_outline(const schema::Document& document);
 
 }  // namespace retrace::design

@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "core/schema/reader.h"
 #include "design/io/design_format.h"
+#include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/zone_elements.h"
 
@@ -87,23 +88,25 @@ std::vector<ZoneChange> changes_of(const Document& document, std::size_t zone) {
 
 /// Returns a design file that contains only the size and the thickness of the part. A zone with another kind of element
 /// starts from this file, so that all other keys have their defaults.
-std::string text_without_elements(const Document& document) {
-  return fmt::format("[array]\nx_length_mm = {}\ny_length_mm = {}\n[body]\nthickness_mm = {}\n",
-                     shortest(document.number("array.x_length_mm")), shortest(document.number("array.y_length_mm")),
-                     shortest(document.number("body.thickness_mm")));
+std::string text_without_elements(const Document& document, const Vec2& size_mm) {
+  return fmt::format("[array]\nx_length_mm = {}\ny_length_mm = {}\n[body]\nthickness_mm = {}\n", shortest(size_mm.x()),
+                     shortest(size_mm.y()), shortest(document.number("body.thickness_mm")));
 }
 
 /// Returns the document of a zone: the design of the whole part with the elements of this zone everywhere.
-Document document_of_zone(const Document& document, std::size_t zone, const std::vector<ZoneChange>& changes) {
+/// \param size_mm size of the part
+Document document_of_zone(const Document& document, std::size_t zone, const std::vector<ZoneChange>& changes,
+                          const Vec2& size_mm) {
   const std::string key = entry_of(zone) + ".set";
   const bool is_of_another_kind =
       std::ranges::any_of(changes, [&](const ZoneChange& change) { return changes_kind(change, document); });
   std::vector<std::string> overrides;
   for (const ZoneChange& change : changes) overrides.push_back(change.text);
   try {
-    Document changed = is_of_another_kind ? schema::read_document(design_format(), text_without_elements(document),
-                                                                  document.source(), kMaxSetBytes, overrides)
-                                          : schema::with(design_format(), document, overrides);
+    Document changed = is_of_another_kind
+                           ? schema::read_document(design_format(), text_without_elements(document, size_mm),
+                                                   document.source(), kMaxSetBytes, overrides)
+                           : schema::with(design_format(), document, overrides);
     for (std::size_t k = changed.count(kZone); k-- > 0;) changed.drop(entry_of(k));
     if (changed.has(kZone)) changed.drop(kZone);
     schema::check(changed, design_format().root, "", &changed);
@@ -114,7 +117,15 @@ Document document_of_zone(const Document& document, std::size_t zone, const std:
   }
 }
 
-/// Divides the part into stripes along x, in the order of the zones.
+/// Returns the x coordinate to the left of which a fraction of the part's area is located.
+double end_of_stripe(const geometry::ZonedSpec& spec, double fraction) {
+  const geometry::PlanRegion* const outline = spec.cutting_outline();
+  if (outline == nullptr) return fraction * spec.size_mm.x();
+  return geometry::coordinate_of_area_fraction(*outline, outline->box_mm, 0, fraction);
+}
+
+/// Divides the part into stripes along x, in the order of the zones. Each stripe has its fraction of the area inside
+/// the outline.
 void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
@@ -133,7 +144,7 @@ void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double share = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
     share += document.number(entry_of(k) + ".area_fraction");
-    const double to_mm = k + 1 == spec.zones.size() ? spec.size_mm.x() : share / sum * spec.size_mm.x();
+    const double to_mm = k + 1 == spec.zones.size() ? spec.size_mm.x() : end_of_stripe(spec, share / sum);
     spec.zones[k].regions = {geometry::to_polygon({{from_mm, 0.0}, {to_mm, spec.size_mm.y()}})};
     from_mm = to_mm;
   }
@@ -261,12 +272,20 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   }
 }
 
+/// Returns the elements of a zone without the outline and the margin of the whole part.
+geometry::PartSpec without_outline(geometry::PartSpec elements) {
+  elements.array.outline.reset();
+  elements.array.x_offset_mm = elements.array.y_offset_mm = 0.0;
+  return elements;
+}
+
 /// Checks that the keys of the whole part are allowed together with zones.
 void check_whole(const Document& document, const geometry::PartSpec& part) {
   const auto refuse = [&](std::string_view key, std::string_view text) {
     document.fail(key, fmt::format("{} together with [[zone]]", text));
   };
   if (part.array.extent == geometry::Extent::infinite) refuse("array.extent", "\"infinite\" is not allowed");
+  if (part.array.outline) return;
   if (part.array.x_offset_mm > 0.0) refuse("array.x_offset_mm", "must be 0");
   if (part.array.y_offset_mm > 0.0) refuse("array.y_offset_mm", "must be 0");
 }
@@ -287,19 +306,21 @@ ZonedPart read_zones(const Document& document) {
   part.base = read_part(document);
   check_whole(document, part.base);
   part.spec.size_mm = {part.base.array.x_length_mm, part.base.array.y_length_mm};
+  part.spec.outline = part.base.array.outline;
   part.spec.thickness_mm = part.base.thickness_mm;
+  part.outline = outline_keys(document);
   part.spec.zones.resize(document.count(kZone));
   part.spec.is_by_cell = read_elements(document, part);
   if (!part.spec.is_by_cell) read_regions(document, part.spec);
   for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
     part.changes.push_back(changes_of(document, k));
-    const Document changed = document_of_zone(document, k, part.changes[k]);
+    const Document changed = document_of_zone(document, k, part.changes[k], part.spec.size_mm);
     const std::string arrangement = changed.text("array.arrangement");
     if (arrangement == "single" || arrangement == "pins" || !has_elements(changed))
       document.fail(entry_of(k),
                     "a part with zones must have an array of prisms or cube corners, and array.arrangement must be "
                     "neither \"single\" nor \"pins\"");
-    part.spec.zones[k].elements = read_part(changed);
+    part.spec.zones[k].elements = without_outline(read_part(changed));
     part.spec.zones[k].rotation_deg = document.number(entry_of(k) + ".rotation_deg");
     check_room(document, k, part.spec.zones[k], part.spec.size_mm);
   }

@@ -8,6 +8,7 @@
 #include "fabrication/job/zone_cells.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/outline/plan_region.h"
 
 namespace retrace::fabrication {
 double blank_scale(const Workpiece& workpiece) {
@@ -16,6 +17,19 @@ double blank_scale(const Workpiece& workpiece) {
 
 InputLocation Job::where(std::string_view key) const {
   return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
+}
+
+JobOutline job_outline(const geometry::PlanRegion& plan) {
+  JobOutline outline{plan.tolerance_mm, {}};
+  for (const geometry::OutlineLoop& loop : plan.outline.loops) outline.borders.push_back({loop});
+  return outline;
+}
+
+geometry::PlanRegion plan_of_outline(const Job& job, std::optional<geometry::OutlineFault>& fault) {
+  std::vector<geometry::OutlineLoop> loops;
+  for (const JobBorder& border : job.outline->borders) loops.push_back(border.sides);
+  return geometry::plan_region(geometry::oriented(std::move(loops)), job.array.x_offset_mm, job.outline->tolerance_mm,
+                               fault);
 }
 
 bool cuts_prisms(const Job& job) {

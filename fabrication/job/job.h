@@ -16,6 +16,7 @@
 #include "core/schema/document.h"
 #include "core/warning.h"
 #include "geometry/elements/part_spec.h"
+#include "geometry/outline/outline.h"
 #include "geometry/vec.h"
 
 namespace retrace::fabrication {
@@ -123,6 +124,18 @@ struct CutZone {
   std::vector<geometry::Vec2> apexes_mm;  ///< positions of the apexes in the part frame
 };
 
+/// Closed border of the outline of a part, or of a hole in it: straight sides and circular arcs.
+struct JobBorder {
+  std::vector<geometry::OutlineSide> sides;
+};
+
+/// Outline of a part that is not a rectangle, in the part frame.
+struct JobOutline {
+  /// Maximum distance between an arc and the sides of the polygon that replaces it.
+  double tolerance_mm = 0.005;
+  std::vector<JobBorder> borders;  ///< outer border, followed by the borders of holes
+};
+
 /// Fabrication job: all data that the planner and the verification need. It contains no optical data.
 struct Job {
   std::string source;  ///< path of the job file as given; empty if the job was made by the program
@@ -131,8 +144,11 @@ struct Job {
   Workpiece workpiece;
   geometry::Element element;           ///< element of the part, without cant
   geometry::AngleErrors angle_errors;  ///< intended angle errors of the elements; cube corners only
-  /// Finite array; for a `single` element, the array has the size of the element's aperture.
+  /// Finite array; for a `single` element, the array has the size of the element's aperture. `array.outline` is the
+  /// polygon of `outline`.
   geometry::ArrayLayout array;
+  /// Outline of the part. Elements that are not completely inside it are not cut. Not set for a rectangle.
+  std::optional<JobOutline> outline;
   /// Zones that are cut instead of the array. If there are zones, only the x and y lengths of `array` are used.
   std::vector<CutZone> zones;
   /// Curved or inclined surface on which the elements are placed, and shape of the blank's face. Its highest point over
@@ -169,6 +185,14 @@ struct CutElement {
   std::int32_t orientation = 0;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
+
+/// Returns an outline as a job stores it.
+JobOutline job_outline(const geometry::PlanRegion& plan);
+
+/// Returns the plan of the job's part, whose margin is the offset of the array.
+/// \param fault set if the outline is not allowed; the returned plan must then not be used
+/// \pre the job has an outline
+geometry::PlanRegion plan_of_outline(const Job& job, std::optional<geometry::OutlineFault>& fault);
 
 /// Returns true if the job cuts prisms with a chisel. Otherwise, it cuts cube corners with a V-shaped tool (strategy
 /// `dmc`).

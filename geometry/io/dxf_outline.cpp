@@ -21,6 +21,8 @@ namespace {
 constexpr double kJoinedFraction = 1e-5;
 constexpr std::size_t kMaxSides = 20'000;
 constexpr double kMaxCoordinate = 1e9;
+/// Layer of entities without a layer.
+constexpr std::string_view kDefaultLayer = "0";
 /// Length in mm of each unit of $INSUNITS, in the order of their numbers. 0: a unit that is not allowed.
 constexpr std::array<double, 15> kUnitLengthsMm = {1.0,     25.4,   304.8, 0.0,  1.0,  10.0, 1000.0, 0.0,
                                                    2.54e-5, 0.0254, 914.4, 1e-7, 1e-6, 1e-3, 100.0};
@@ -122,7 +124,8 @@ class DxfReader {
   Group read_entities() {
     has_entities_ = true;
     Group group = next();
-    while (!is(group, 0, "ENDSEC") && !is(group, 0, "EOF")) group = group.code == 0 ? read_entity(group) : next();
+    while (!is(group, 0, "ENDSEC") && !is(group, 0, "EOF"))
+      group = group.code != 0 ? next() : is_next_selected() ? read_entity(group) : skip_entity();
     return group;
   }
 
@@ -131,18 +134,36 @@ class DxfReader {
     std::array<double, 60> values{};
     std::array<bool, 60> is_given{};
     int flags = 0;
-    std::string_view layer = "0";
     Vec3 extrusion = Vec3::UnitZ();
     std::vector<Vec2> corners;
     std::vector<double> bulges;
   };
 
-  /// Reads an entity and returns the group that follows it.
+  /// Returns true if the entity whose groups follow is on the selected layer. The position in the text is not changed.
+  bool is_next_selected() {
+    if (selection_.layer.empty()) return true;
+    const std::string_view remainder = remainder_;
+    const int line = line_;
+    std::string_view layer = kDefaultLayer;
+    for (Group group = next(); group.code != 0; group = next())
+      if (group.code == 8) layer = group.value;
+    remainder_ = remainder;
+    line_ = line;
+    return layer == selection_.layer;
+  }
+
+  /// Skips the groups of an entity and returns the group that follows it.
+  Group skip_entity() {
+    Group group = next();
+    while (group.code != 0) group = next();
+    return group;
+  }
+
+  /// Reads an entity of the selected layer and returns the group that follows it.
   Group read_entity(const Group& start) {
     Entity entity;
     Group group = next();
     for (; group.code != 0; group = next()) {
-      if (group.code == 8) entity.layer = group.value;
       if (group.code == 70) entity.flags = static_cast<int>(std::clamp(number_of(group), 0.0, 1e6));
       if (group.code == 210 || group.code == 220 || group.code == 230)
         entity.extrusion[(group.code - 210) / 10] = number_of(group);
@@ -158,7 +179,7 @@ class DxfReader {
       if (!entity.bulges.empty() && group.code == 42) entity.bulges.back() = entity.values[42];
       if (entity.corners.size() > kMaxSides) fail(group.line, fmt::format("must have at most {} corners", kMaxSides));
     }
-    if (selection_.layer.empty() || entity.layer == selection_.layer) add(start, entity);
+    add(start, entity);
     return group;
   }
 

@@ -315,6 +315,12 @@ OutlineLoop circle(const Vec2& centre_mm, double radius_mm) {
   return {{right, left, 1.0}, {left, right, 1.0}};
 }
 
+bool is_circle(const OutlineLoop& loop) {
+  constexpr double kSameBulge = 1e-9;
+  const auto is_half = [](const OutlineSide& side) { return std::abs(std::abs(side.bulge) - 1.0) < kSameBulge; };
+  return loop.size() == 2 && is_half(loop[0]) && is_half(loop[1]) && loop[0].bulge * loop[1].bulge > 0.0;
+}
+
 OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<double>& radius_mm,
                                  std::optional<CornerFault>& fault) {
   constexpr double kFractionRounding = 1e-12;

@@ -61,6 +61,9 @@ OutlineLoop moved(OutlineLoop loop, const Vec2& by);
 /// Returns a circle as a loop of two half circles, counter-clockwise.
 OutlineLoop circle(const Vec2& centre_mm, double radius_mm);
 
+/// Returns true if a loop is a full circle of two half circles.
+bool is_circle(const OutlineLoop& loop);
+
 /// Corner whose radius is too large for its sides.
 struct CornerFault {
   std::size_t corner = 0;  ///< number of the corner, from 0

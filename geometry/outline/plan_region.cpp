@@ -168,6 +168,19 @@ bool cover(const std::vector<Polygon>& portions, const Polygon& polygon, double 
   return area(polygon) - sum <= tolerance_mm * perimeter(polygon);
 }
 
+/// Returns the area of a convex polygon at coordinates below a bound.
+double area_below(const Polygon& polygon, Eigen::Index axis, double bound) {
+  Polygon below;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2& from = polygon[k];
+    const Vec2& to = polygon[(k + 1) % polygon.size()];
+    if (from[axis] <= bound) below.push_back(from);
+    if ((from[axis] < bound && to[axis] > bound) || (from[axis] > bound && to[axis] < bound))
+      below.push_back(from + (to - from) * ((bound - from[axis]) / (to[axis] - from[axis])));
+  }
+  return below.size() < 3 ? 0.0 : area(below);
+}
+
 }  // namespace
 
 bool PlanRegion::is_box() const {
@@ -199,10 +212,66 @@ PlanRegion plan_region(Outline outline, double margin_mm, double tolerance_mm, s
   return plan;
 }
 
+PlanRegion moved(PlanRegion plan, const Vec2& by) {
+  for (OutlineLoop& loop : plan.outline.loops) loop = moved(std::move(loop), by);
+  plan.box_mm = moved(plan.box_mm, by);
+  plan.hull = moved(std::move(plan.hull), by);
+  for (ConvexRegion* const region : {&plan.whole, &plan.elements, &plan.margin}) {
+    for (Polygon& piece : region->pieces) piece = moved(std::move(piece), by);
+    for (Rectangle& box : region->boxes) box = moved(box, by);
+    for (PolygonLoop& border : region->borders) border = moved(std::move(border), by);
+  }
+  return plan;
+}
+
+PlanRegion without_margin(PlanRegion plan) {
+  plan.margin_mm = 0.0;
+  plan.margin = {};
+  add_margin(plan);
+  return plan;
+}
+
 std::vector<Polygon> clip(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {
   std::vector<Polygon> inside = portions(polygon, region, tolerance_mm);
   if (inside.size() > 1 && cover(inside, polygon, tolerance_mm)) return {polygon};
   return inside;
+}
+
+std::optional<std::array<Vec2, 2>> clip_segment(const Vec2& from, const Vec2& to, const Polygon& polygon) {
+  double first = 0.0;
+  double last = 1.0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 along = polygon[(k + 1) % polygon.size()] - polygon[k];
+    // The cross products are positive on the inner side.
+    const double at_from = plane::cross(along, from - polygon[k]);
+    const double at_to = plane::cross(along, to - polygon[k]);
+    if (at_from < 0.0 && at_to < 0.0) return std::nullopt;
+    if (at_from < 0.0) first = std::max(first, at_from / (at_from - at_to));
+    if (at_to < 0.0) last = std::min(last, at_from / (at_from - at_to));
+  }
+  if (first >= last) return std::nullopt;
+  return std::array<Vec2, 2>{from + first * (to - from), from + last * (to - from)};
+}
+
+double coordinate_of_area_fraction(const PlanRegion& plan, const Rectangle& room, Eigen::Index axis, double fraction) {
+  const double near_mm = kPlanRounding * plan.box_mm.size().norm();
+  std::vector<Polygon> pieces;
+  double all_mm2 = 0.0;
+  for (const Polygon& piece : plan.whole.pieces) {
+    Polygon within = clip(piece, room, near_mm);
+    if (within.empty()) continue;
+    all_mm2 += area(within);
+    pieces.push_back(std::move(within));
+  }
+  double low = room.lower[axis];
+  double high = room.upper[axis];
+  // Bisection until the bounds are neighbouring numbers. The area is a continuous function of the coordinate.
+  for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high)) {
+    double below_mm2 = 0.0;
+    for (const Polygon& piece : pieces) below_mm2 += area_below(piece, axis, middle);
+    (below_mm2 < fraction * all_mm2 ? low : high) = middle;
+  }
+  return high;
 }
 
 bool is_within(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {

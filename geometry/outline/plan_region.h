@@ -2,6 +2,7 @@
 
 // Plan of a part with an outline, as polygons: its borders, the area of elements and the flat margin.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -42,9 +43,24 @@ struct PlanRegion {
 ///     plan must then not be used.
 PlanRegion plan_region(Outline outline, double margin_mm, double tolerance_mm, std::optional<OutlineFault>& fault);
 
+/// Returns a plan without its margin: elements extend to the outline.
+PlanRegion without_margin(PlanRegion plan);
+
+/// Returns a plan that is moved, so that the corner of its bounding box is no longer the origin.
+PlanRegion moved(PlanRegion plan, const Vec2& by);
+
 /// Returns the portions of a convex polygon that are inside a region.
 /// \param tolerance_mm as for clip()
 std::vector<Polygon> clip(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm);
+
+/// Returns the ends of the portion of a segment that is inside a convex polygon, or nothing if no portion is inside.
+std::optional<std::array<Vec2, 2>> clip_segment(const Vec2& from, const Vec2& to, const Polygon& polygon);
+
+/// Returns the coordinate that divides the area of a plan within a rectangle.
+/// \param axis 0 to divide along x, 1 to divide along y
+/// \param fraction fraction of the area within `room` that has a smaller coordinate; 0 to 1
+/// \pre the plan has an area within `room`
+double coordinate_of_area_fraction(const PlanRegion& plan, const Rectangle& room, Eigen::Index axis, double fraction);
 
 /// Returns true if a convex polygon is completely inside a region.
 /// \param tolerance_mm maximum area outside the region, divided by the perimeter of the polygon

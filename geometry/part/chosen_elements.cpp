@@ -37,7 +37,8 @@ Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
 }
 
 /// Returns a point next to a wall, projected to (x, y): the wall's centroid, moved by `by_mm` along the outward normal.
-/// If the wall separates two cells, this point is in the shallower cell.
+/// If the wall separates two cells, this point is in the shallower cell. With a negative `by_mm`, it is in the deeper
+/// cell.
 Vec2 beyond_wall(const SurfacePatch& patch, const PatchFacet& wall, double by_mm) {
   const std::span<const std::uint32_t> ring(&patch.corners[wall.first_corner], wall.corner_count);
   return (ring_centroid(patch.vertices, ring) + by_mm * wall.normal).head<2>();
@@ -70,6 +71,10 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
     facets_.resize(first + patch.facets.size());
     for (std::size_t c = 0; c < patch.cells.size(); ++c) {
       const PatchCell& cell = patch.cells[c];
+      if (cell.first_of_element) {
+        choose_open_side(patch, placement.offset_mm, cell, first);
+        continue;
+      }
       const Vec2 place_mm = placement.offset_mm + middles[placement.patch][c];
       const LatticeElement element = element_at(place_mm);
       const bool chosen = is_chosen(element, place_mm);
@@ -91,6 +96,14 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
   const auto* const by_chance = std::get_if<RandomFraction>(&choice_);
   contains_all_ = all && (by_chance ? by_chance->fraction >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));
   is_empty_ = none;
+}
+
+void ChosenElements::choose_open_side(const SurfacePatch& patch, const Vec2& offset_mm, const PatchCell& cell,
+                                      std::size_t first) {
+  for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
+    const Vec2 inside = offset_mm + beyond_wall(patch, patch.facets[f], -inwards_.x());
+    facets_[first + f] = is_chosen(element_at(inside), inside);
+  }
 }
 
 ChosenElements::LatticeElement ChosenElements::element_at(const Vec2& position_mm) const {

@@ -190,6 +190,7 @@ Part build_part(const ZonedSpec& spec) {
   measure_layer(part);
   check_plate(part);
   measure(part);
+  if (!part.entrance_pieces.empty()) part.top_mm = part.thickness_mm;
   return part;
 }
 

@@ -63,11 +63,13 @@ bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
   return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
 }
 
-/// Clips the tiles of an array to a region. Tiles of one cell must be consecutive.
+/// Clips the tiles of an array to a region, and to the area of elements of an outline. Tiles of one cell must be
+/// consecutive.
 class RegionCutter {
  public:
-  RegionCutter(const Polygon& region, PartialElements partial, double tolerance_mm)
-      : region_(region), partial_(partial), tolerance_mm_(tolerance_mm) {}
+  /// \param outline outline of the plate, or null
+  RegionCutter(const Polygon& region, const PlanRegion* outline, PartialElements partial, double tolerance_mm)
+      : region_(region), outline_(outline), partial_(partial), tolerance_mm_(tolerance_mm) {}
 
   /// Clips all cells to the region, and counts complete and partial elements again.
   void cut(ArrayTiles& array) const {
@@ -81,15 +83,26 @@ class RegionCutter {
   }
 
  private:
-  void add_cell(std::vector<Tile> tiles, ArrayTiles& within) const {
-    const bool is_element = std::ranges::any_of(tiles, [](const Tile& t) { return t.role == FacetRole::retro_facet; });
+  std::vector<Polygon> portions_of(const Polygon& polygon) const {
+    Polygon within = clip(polygon, region_, tolerance_mm_);
+    if (within.empty()) return {};
+    if (outline_ == nullptr) return {std::move(within)};
+    return clip(within, outline_->elements, tolerance_mm_);
+  }
+
+  void add_cell(const std::vector<Tile>& whole, ArrayTiles& within) const {
+    const bool is_element = std::ranges::any_of(whole, [](const Tile& t) { return t.role == FacetRole::retro_facet; });
+    std::vector<Tile> tiles;
     double lost_mm2 = 0.0;
-    for (Tile& tile : tiles) {
-      const double before_mm2 = area(tile.outline);
-      tile.outline = clip(tile.outline, region_, tolerance_mm_);
-      lost_mm2 += before_mm2 - (tile.outline.empty() ? 0.0 : area(tile.outline));
+    for (const Tile& tile : whole) {
+      double kept_mm2 = 0.0;
+      for (Polygon& portion : portions_of(tile.outline)) {
+        kept_mm2 += area(portion);
+        tiles.push_back(tile);
+        tiles.back().outline = std::move(portion);
+      }
+      lost_mm2 += area(tile.outline) - kept_mm2;
     }
-    std::erase_if(tiles, [](const Tile& tile) { return tile.outline.empty(); });
     if (tiles.empty()) return;
     const bool is_cut = is_loss(lost_mm2, tiles.front().outline, tolerance_mm_);
     if (is_element) (is_cut ? within.partial : within.full) += 1;
@@ -100,16 +113,28 @@ class RegionCutter {
   }
 
   const Polygon& region_;
+  const PlanRegion* outline_;
   PartialElements partial_;
   double tolerance_mm_;
 };
+
+/// Adds flat tiles where a region contains a part of the outline's margin.
+/// \param outline outline of the plate, or null
+void add_margin(const Polygon& region, const PlanRegion* outline, double tolerance_mm, ArrayTiles& array) {
+  if (outline == nullptr) return;
+  std::uint32_t cell = array.tiles.empty() ? 0 : array.tiles.back().cell;
+  for (Polygon& portion : clip(region, outline->margin, tolerance_mm))
+    array.tiles.push_back({std::move(portion), {}, FacetRole::flat_back, ++cell, true, {}});
+}
 
 Vec2 pitch_of(const PartSpec& spec) {
   return bounding_box(aperture_outline(spec.element)).size() + Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm);
 }
 
 /// Returns the tiles of the zone's cells. Each element is rotated about its centroid.
-ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const ArrayPlan& plan, double tolerance_mm) {
+/// \param outline outline of the plate, or null
+ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const ArrayPlan& plan, const PlanRegion* outline,
+                          double tolerance_mm) {
   ArrayTiles array{uncut_tiles(spec, zone.cells), 0, 0};
   if (zone.rotation_deg != 0.0) {
     auto cell = plan.cells.begin();
@@ -120,7 +145,7 @@ ArrayTiles tiles_of_cells(const PartZone& zone, const PartSpec& spec, const Arra
     }
   }
   const Polygon block = to_polygon(plan.block_mm);
-  RegionCutter(block, spec.array.partial_elements, tolerance_mm).cut(array);
+  RegionCutter(block, outline, spec.array.partial_elements, tolerance_mm).cut(array);
   return array;
 }
 
@@ -147,19 +172,25 @@ struct FillingArray {
 };
 
 /// Returns the tiles of the elements in a region, in the part frame.
-ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double tolerance_mm) {
-  const FillingArray filling(zone, region, tolerance_mm);
-  ArrayTiles array = array_tiles(filling.spec);
+/// \param outline outline of the plate, or null
+ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, const PlanRegion* outline, double tolerance_mm) {
+  FillingArray filling(zone, region, tolerance_mm);
   const Rectangle box = bounding_box(region);
+  if (outline != nullptr && !filling.is_cut)
+    filling.spec.array.outline = std::make_shared<const PlanRegion>(moved(*outline, -box.lower));
+  ArrayTiles array = array_tiles(filling.spec);
   const Turn to_part =
       filling.is_cut ? Turn(zone.rotation_deg, filling.middle_mm(), box.centre()) : Turn(0.0, Vec2::Zero(), box.lower);
   for (Tile& tile : array.tiles) turn(tile, to_part);
-  if (filling.is_cut) RegionCutter(region, filling.spec.array.partial_elements, tolerance_mm).cut(array);
+  if (!filling.is_cut) return array;
+  RegionCutter(region, outline, filling.spec.array.partial_elements, tolerance_mm).cut(array);
+  add_margin(region, outline, tolerance_mm, array);
   return array;
 }
 
-/// Appends the elements of a zone's array that are completely within a region.
-void add_whole_elements(const PartZone& zone, const Polygon& region, double tolerance_mm,
+/// Appends the elements of a zone's array that are completely within a region and within the outline.
+/// \param plate outline of the plate, or null
+void add_whole_elements(const PartZone& zone, const Polygon& region, const PlanRegion* plate, double tolerance_mm,
                         std::vector<ElementPlacement>& elements) {
   const FillingArray filling(zone, region, tolerance_mm);
   const Polygon round_apex = element_cell(filling.spec.element).outline;
@@ -168,6 +199,7 @@ void add_whole_elements(const PartZone& zone, const Polygon& region, double tole
     for (Vec2& p : outline) p = filling.to_part.place(whole.centre_mm + (whole.is_rotated ? -1.0 : 1.0) * p);
     const Polygon left = clip(outline, region, tolerance_mm);
     if (left.empty() || is_loss(area(outline) - area(left), left, tolerance_mm)) continue;
+    if (plate != nullptr && !is_within(outline, plate->elements, tolerance_mm)) continue;
     elements.push_back({filling.to_part.place(whole.centre_mm), zone.rotation_deg + (whole.is_rotated ? 180.0 : 0.0)});
   }
 }
@@ -189,13 +221,14 @@ std::array<Vec2, 2> periods_of(const PartSpec& elements, double rotation_deg) {
 /// Collects the tiles of all zones, one zone after the other.
 class ZoneTiler {
  public:
-  ZoneTiler(const Vec2& size_mm, double tolerance_mm) : size_mm_(size_mm), tolerance_mm_(tolerance_mm) {}
+  ZoneTiler(const ZonedSpec& spec, double tolerance_mm)
+      : spec_(spec), outline_(spec.cutting_outline()), tolerance_mm_(tolerance_mm) {}
 
   ZoneElements add_regions(const PartZone& zone) {
     ZoneElements elements;
     for (const Polygon& region : zone.regions) {
-      append(tiles_of(zone, region, tolerance_mm_), elements);
-      elements.area_mm2 += area(region);
+      append(tiles_of(zone, region, outline_, tolerance_mm_), elements);
+      for (const Polygon& inner : within_plate(spec_, region)) elements.area_mm2 += area(inner);
     }
     return elements;
   }
@@ -204,10 +237,12 @@ class ZoneTiler {
   ZoneElements add_cells(const PartZone& zone, const PartSpec& array, const ArrayPlan& plan,
                          const std::vector<Rectangle>& land_mm) {
     ZoneElements elements;
-    ArrayTiles tiles = tiles_of_cells(zone, array, plan, tolerance_mm_);
+    ArrayTiles tiles = tiles_of_cells(zone, array, plan, outline_, tolerance_mm_);
+    if (&zone == &spec_.zones.front()) add_margin(to_polygon(plan.block_mm), outline_, tolerance_mm_, tiles);
     std::uint32_t last = tiles.tiles.empty() ? 0 : tiles.tiles.back().cell;
     for (const Rectangle& land : land_mm)
-      tiles.tiles.push_back({to_polygon(land), {}, FacetRole::flat_back, ++last, true, {}});
+      for (Polygon& portion : within_plate(spec_, to_polygon(land)))
+        tiles.tiles.push_back({std::move(portion), {}, FacetRole::flat_back, ++last, true, {}});
     for (const Tile& tile : tiles.tiles) elements.area_mm2 += area(tile.outline);
     append(std::move(tiles), elements);
     return elements;
@@ -221,7 +256,7 @@ class ZoneTiler {
     elements.partial += array.partial;
     std::optional<std::uint32_t> last;
     for (Tile& tile : array.tiles) {
-      settle_on_border(tile.outline, size_mm_, tolerance_mm_);
+      settle_on_border(tile.outline, spec_.size_mm, tolerance_mm_);
       if (last != tile.cell) {
         ++cells_;
         ++elements.cells;
@@ -233,7 +268,8 @@ class ZoneTiler {
     }
   }
 
-  Vec2 size_mm_;
+  const ZonedSpec& spec_;
+  const PlanRegion* outline_;
   double tolerance_mm_;
   std::uint32_t cells_ = 0;
   std::vector<Tile> tiles_;
@@ -347,15 +383,40 @@ PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone) {
   PartSpec array = zone.elements;
   array.array.x_length_mm = spec.size_mm.x();
   array.array.y_length_mm = spec.size_mm.y();
+  array.array.outline = spec.outline;
+  array.array.x_offset_mm = array.array.y_offset_mm = spec.outline ? spec.outline->margin_mm : 0.0;
   return array;
 }
+
+const PlanRegion* ZonedSpec::cutting_outline() const {
+  return outline && !(outline->is_box() && outline->margin_mm == 0.0) ? outline.get() : nullptr;
+}
+
+std::vector<Polygon> within_plate(const ZonedSpec& spec, const Polygon& region) {
+  const PlanRegion* const outline = spec.cutting_outline();
+  if (outline == nullptr) return {region};
+  return clip(region, outline->whole, kSamePlace * size_of(spec));
+}
+
+namespace {
+
+double area_in_plate(const ZonedSpec& spec, const Polygon& region) {
+  double sum = 0.0;
+  for (const Polygon& inner : within_plate(spec, region)) sum += area(inner);
+  return sum;
+}
+
+}  // namespace
 
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
   if (spec.is_by_cell) return fault_of_cells(spec);
   // Corners within the relative distance kSamePlace are merged later. The tolerance for gaps and overlaps is half of
   // this distance.
   const double near_mm = 0.5 * kSamePlace * size_of(spec);
-  const double near_mm2 = near_mm * spec.size_mm.norm();
+  const PlanRegion* const outline = spec.cutting_outline();
+  // Each convex polygon of an outline adds the rounding errors of its sides.
+  const double cuts = outline != nullptr ? 4.0 * static_cast<double>(outline->whole.pieces.size()) : 1.0;
+  const double near_mm2 = cuts * near_mm * spec.size_mm.norm();
   struct Placed {
     std::size_t zone;
     const Polygon* region;
@@ -373,13 +434,17 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
                               (other.box.lower.array() >= box.upper.array()).any();
         if (is_apart) continue;
         const Polygon both = clip(region, *other.region, near_mm);
-        if (!both.empty() && area(both) > near_mm2)
+        if (!both.empty() && area_in_plate(spec, both) > near_mm2)
           return ZoneFault{z, fmt::format("the zone overlaps {}",
                                           other.zone == z ? "itself" : fmt::format("zone {}", other.zone + 1))};
       }
       placed.push_back({z, &region, box});
-      covered_mm2 += area(region);
+      covered_mm2 += area_in_plate(spec, region);
     }
+  for (std::size_t z = 0; outline != nullptr && z < spec.zones.size(); ++z)
+    if (std::ranges::all_of(spec.zones[z].regions,
+                            [&](const Polygon& region) { return area_in_plate(spec, region) <= near_mm2; }))
+      return ZoneFault{z, "the zone is outside the outline of the part"};
   if (spec.area_mm2() - covered_mm2 > near_mm2)
     return ZoneFault{
         spec.zones.size() - 1,
@@ -402,7 +467,7 @@ std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec)
   if (!spec.is_by_cell) {
     for (std::size_t z = 0; z < spec.zones.size(); ++z)
       for (const Polygon& region : spec.zones[z].regions)
-        add_whole_elements(spec.zones[z], region, tolerance_mm, elements[z]);
+        add_whole_elements(spec.zones[z], region, spec.cutting_outline(), tolerance_mm, elements[z]);
     return elements;
   }
   const ArrayPlan plan = plan_of_array(array_of_cells(spec, spec.zones.front()));
@@ -412,6 +477,9 @@ std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec)
     for (const std::uint32_t number : zone.cells) {
       while (cell->number != number) ++cell;
       if (!cell->is_element || !contains(plan.block_mm, cell->outline, tolerance_mm)) continue;
+      if (const PlanRegion* const plate = spec.cutting_outline();
+          plate != nullptr && !is_within(cell->outline, plate->elements, tolerance_mm))
+        continue;
       const Vec2 apex = centroid(cell->outline);
       // A triangle that is rotated by 180 degrees has no corner in the direction +x from its centroid.
       const bool is_rotated = std::ranges::none_of(
@@ -422,6 +490,23 @@ std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec)
   return elements;
 }
 
+namespace {
+
+/// Returns the borders of the plate for build_patch().
+PatchRim rim_of(const ZonedSpec& spec) {
+  PatchRim rim;
+  const PlanRegion* const outline = spec.cutting_outline();
+  if (outline == nullptr) return rim;
+  for (const ConvexRegion* region : {&outline->whole, &outline->elements})
+    rim.borders.insert(rim.borders.end(), region->borders.begin(), region->borders.end());
+  if (outline->is_convex()) return rim;
+  rim.hull = outline->hull;
+  rim.top_mm = spec.thickness_mm;
+  return rim;
+}
+
+}  // namespace
+
 void add_zones(Part& part, const ZonedSpec& spec) {
   part.size_mm = size_of(spec);
   // BeamWalk limits the size of its beam fragments to the size of this prism. A zoned part may have several kinds of
@@ -429,13 +514,17 @@ void add_zones(Part& part, const ZonedSpec& spec) {
   part.spec.element = RtpElement{part.size_mm, part.size_mm, 90.0};
   part.spec.thickness_mm = spec.thickness_mm;
   const Rectangle plate{Vec2::Zero(), spec.size_mm};
-  part.outline = to_polygon(plate);
-  ZoneTiler tiler(spec.size_mm, kSamePlace * part.size_mm);
+  const PlanRegion* const outline = spec.cutting_outline();
+  part.outline = outline != nullptr ? outline->hull : to_polygon(plate);
+  part.spec.array.outline = spec.outline;
+  if (outline != nullptr && !outline->is_convex()) part.entrance_pieces = outline->whole.pieces;
+  ZoneTiler tiler(spec, kSamePlace * part.size_mm);
   ArrayPlan plan;
   if (spec.is_by_cell) {
     const PartSpec array = array_of_cells(spec, spec.zones.front());
     plan = plan_of_array(array);
-    part.lattice_regions.push_back({part.outline, periods_of(array, 0.0)});
+    for (const Polygon& piece : within_plate(spec, part.outline))
+      part.lattice_regions.push_back({piece, periods_of(array, 0.0)});
   }
   for (const PartZone& zone : spec.zones) {
     const bool is_first = &zone == &spec.zones.front();
@@ -443,11 +532,12 @@ void add_zones(Part& part, const ZonedSpec& spec) {
                                                            is_first ? plan.land_mm : std::vector<Rectangle>())
                                          : tiler.add_regions(zone));
     for (const Polygon& region : zone.regions)
-      part.lattice_regions.push_back({region, periods_of(zone.elements, zone.rotation_deg)});
+      for (const Polygon& inner : within_plate(spec, region))
+        part.lattice_regions.push_back({inner, periods_of(zone.elements, zone.rotation_deg)});
     part.elements_full += part.zones.back().full;
     part.elements_partial += part.zones.back().partial;
   }
-  part.patches.push_back(build_patch(tiler.tiles(), plate, part.size_mm));
+  part.patches.push_back(build_patch(tiler.tiles(), plate, part.size_mm, rim_of(spec)));
   part.placements.push_back({0, Vec2::Zero()});
 }
 

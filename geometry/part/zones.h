@@ -3,10 +3,12 @@
 // Builds parts with zones. A zone is a set of regions, or of cells, of a plate. Each zone has its own kind of elements.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/outline/plan_region.h"
 #include "geometry/part/part.h"
 
 namespace retrace::geometry {
@@ -34,7 +36,7 @@ ArrayPlan plan_of_array(const PartSpec& spec);
 /// placed in this box. With a rotation, a larger array is rotated about the centre of the bounding box such that it
 /// covers the region.
 struct PartZone {
-  std::vector<Polygon> regions;  ///< in the part frame
+  std::vector<Polygon> regions;  ///< in the part frame; they may extend beyond the outline of the plate
   /// Rotation of the elements in the plane, counter-clockwise as seen from +z. If the zone consists of cells, each
   /// element is rotated about its own centroid.
   double rotation_deg = 0.0;
@@ -42,15 +44,19 @@ struct PartZone {
   std::vector<std::uint32_t> cells = {};  ///< used instead of regions: numbers of cells of the plate's array, ascending
 };
 
-/// A rectangular plate with zones that cover it.
+/// A plate with zones that cover it.
 struct ZonedSpec {
-  Vec2 size_mm = Vec2::Zero();
+  Vec2 size_mm = Vec2::Zero();  ///< size of the rectangular plate, or of the bounding box of its outline
   double thickness_mm = 0.0;
   std::vector<PartZone> zones;
   /// true if zones consist of cells instead of regions; the land then belongs to the first zone
   bool is_by_cell = false;
+  /// Outline of a plate that is not a rectangle, or null. It cuts the regions and the elements of the zones.
+  std::shared_ptr<const PlanRegion> outline = {};
 
-  double area_mm2() const { return size_mm.prod(); }
+  double area_mm2() const { return outline ? outline->area_mm2() : size_mm.prod(); }
+  /// Returns the outline that cuts the zones, or null if the plate is a rectangle without a flat margin.
+  const PlanRegion* cutting_outline() const;
 };
 
 /// Returns the array whose cells a zone uses. It has the element of the zone and the size of the plate.
@@ -63,10 +69,13 @@ struct ZoneFault {
   std::string text;  ///< such as "reaches beyond the part" or "overlaps zone 1"
   Subject subject = Subject::zone;
 };
+/// Returns the convex polygons of a region that are inside the plate.
+std::vector<Polygon> within_plate(const ZonedSpec& spec, const Polygon& region);
+
 /// Checks the zones. Returns the first fault, or nothing if there is none. The zones must cover the plate without
-/// overlap. If zones consist of cells, three more conditions apply. The array of each zone must have its cells at the
-/// positions of the first array's cells. The rotation of a zone must map the outline of each element to itself. Each
-/// zone must contain an element.
+/// overlap inside its outline. If zones consist of cells, three more conditions apply. The array of each zone must have
+/// its cells at the positions of the first array's cells. The rotation of a zone must map the outline of each element
+/// to itself. Each zone must contain an element.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// Returns the approximate number of elements in all zones.

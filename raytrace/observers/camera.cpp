@@ -279,7 +279,7 @@ struct CameraTracer::Impl::GuideTraining {
 };
 
 /// Returns the point at which a ray enters the plate of a finite part, through the entrance face or a side. Returns
-/// nothing if the ray meets neither of them from outside.
+/// nothing if the ray meets neither of them from outside, and for the sides of a part with notches or holes.
 std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ray) const {
   const PathSetup& setup = setups.front();
   const auto is_within = [&](const Vec3& p, std::size_t except) {
@@ -287,10 +287,14 @@ std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ra
       if (k != except && setup.sides[k].normal.dot(p) > setup.sides[k].offset_mm) return false;
     return true;
   };
+  // A ray may pass through a notch or a hole of the entrance face.
+  const auto is_over_face = [&](const Vec3& p) {
+    return setup.entrance_pieces.empty() || setup.is_over_piece(p.head<2>(), 0.0);
+  };
   if (ray.direction.z() < 0.0) {
     const double t = (setup.thickness_mm - ray.origin.z()) / ray.direction.z();
     const Vec3 at = ray.origin + t * ray.direction;
-    if (t > 0.0 && is_within(at, setup.sides.size())) {
+    if (t > 0.0 && is_within(at, setup.sides.size()) && is_over_face(at)) {
       Contact contact{Contact::Kind::face, at, at, Eigen::Matrix3d::Identity(), 0};
       contact.local.z() = setup.thickness_mm;
       return contact;
@@ -336,12 +340,27 @@ struct CameraTracer::Impl::Block {
   /// Traces the light of one path with the PathWalker.
   void resume(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample, std::uint32_t& choices) {
-    const auto behind = [&] { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; };
     const double before = behind();
     accumulator.begin(start.owner);
     walkers[wavelength].resume(start.position, start.ray, key, replicate, sample, choices);
     accumulator.on_transmission(start.owner, behind() - before);
   }
+
+  /// Traces the light of one path that meets a part with notches or holes, but not its entrance face.
+  void launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
+              std::uint32_t sample) {
+    const double before = behind();
+    accumulator.begin(start.owner);
+    if (walkers[wavelength].launch(start.position, start.ray, key, replicate, sample)) {
+      paths[start.owner].contact.kind = Contact::Kind::side;
+      accumulator.on_transmission(start.owner, behind() - before);
+    } else {
+      accumulator.on_transmission(start.owner, 1.0);
+    }
+  }
+
+  /// Returns the power that has left through the sides and the back.
+  double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
   std::vector<CameraSample> paths;  ///< kPointsPerPass per pixel
   Tally tally{1};
@@ -388,7 +407,11 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
     return;
   }
   std::uint32_t choices = 0;
-  block.resume(on, wavelength, {seed, kCameraChoiceStream}, point, pixel, choices);
+  const RandomKey key{seed, kCameraChoiceStream};
+  if (!part.entrance_pieces.empty() && contact.kind == Contact::Kind::outside)
+    block.launch(on, wavelength, key, point, pixel);
+  else
+    block.resume(on, wavelength, key, point, pixel, choices);
 }
 
 /// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows something else.

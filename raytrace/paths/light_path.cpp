@@ -98,7 +98,7 @@ class Follower {
     source_ = hit.facet;
     const Vec3 out = inside_ ? facet.normal : Vec3(-facet.normal);
     const auto f = fresnel_at_back(setup_.optics, facet.role, inside_, out.dot(direction_));
-    const bool goes_on = split(out, facet.role, f, setup_.optics.ratio_at_back(inside_));
+    const bool goes_on = split(out, facet.role, f, ratio_at_face(setup_.optics, facet.role, inside_));
     path_.steps.back().facet = hit.facet;
     return goes_on;
   }

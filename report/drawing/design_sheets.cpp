@@ -112,7 +112,9 @@ void draw_zones(SvgGroup& group, const PlanPanel& panel, const ToPaper& at) {
     if (panel.omits_faces)
       for (const Polygon& region : panel.zones[k].regions_mm)
         group.faces("zone " + zone_style(k), {on_paper(region, at)});
-    for (const Polygon& region : panel.zones[k].regions_mm) group.outline("zone-border", on_paper(region, at));
+    if (panel.zones[k].sides_mm.empty())
+      for (const Polygon& region : panel.zones[k].regions_mm) group.outline("zone-border", on_paper(region, at));
+    group.lines("zone-border", on_paper(panel.zones[k].sides_mm, at));
   }
   for (std::size_t k = 0; k < panel.zones.size(); ++k)
     for (const Vec2& label : panel.zones[k].labels_mm) {
@@ -153,6 +155,13 @@ void draw_section_marks(SvgGroup& group, Point left, Point right) {
   group.reserve({left.x - beyond - 14.0, left.y - 16.0}, {14.0, 12.0});
 }
 
+/// Returns the outer border of a part, and the borders of its holes.
+std::vector<std::vector<Point>> borders_on_paper(const Polygon& outer_mm, const PlanPanel& panel, const ToPaper& at) {
+  std::vector<std::vector<Point>> borders = {on_paper(outer_mm, at)};
+  for (const geometry::PolygonLoop& hole : panel.holes_mm) borders.push_back(on_paper(hole, at));
+  return borders;
+}
+
 Panel plan_panel(const PlanPanel& panel) {
   const Rectangle& window = panel.view.window_mm;
   const Vec2 size = window.size();
@@ -161,7 +170,8 @@ Panel plan_panel(const PlanPanel& panel) {
   const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - origin.x()), scale * (origin.y() - p.y())}; };
   Panel result{{}, place_of(origin, scale, "y")};
   SvgGroup& group = result.group;
-  if (panel.omits_faces && !panel.outline_mm.empty()) group.outline("plain", on_paper(panel.outline_mm, at));
+  if (panel.omits_faces && !panel.outline_mm.empty())
+    group.faces("plain", borders_on_paper(panel.outline_mm, panel, at));
   const bool fine = has_fine_lines(panel.view, scale);
   if (fine) result.attributes += " class=\"fine\"";
   draw_faces(group, panel.view, at);
@@ -170,7 +180,7 @@ Panel plan_panel(const PlanPanel& panel) {
   if (!outline.empty()) outline = geometry::clip(outline, window, 1e-9 * size.maxCoeff());
   const bool is_whole = !outline.empty() && outline.size() == panel.outline_mm.size() &&
                         geometry::area(outline) > (1.0 - 1e-9) * geometry::area(panel.outline_mm);
-  if (is_whole) group.outline("outline", on_paper(outline, at));
+  if (is_whole) group.faces("outline", borders_on_paper(outline, panel, at));
   if (panel.circle_radius_mm) group.circle("round", at(panel.circle_mm), scale * *panel.circle_radius_mm);
   if (panel.period_mm) group.outline("period", on_paper(geometry::to_polygon(*panel.period_mm), at));
   const Point lower = at({window.lower.x(), window.upper.y()});

@@ -265,6 +265,7 @@ AsMachined as_machined(const VerificationRun& run) {
     part.scratches.clear();
   }
   part.body = machined_body(run.job, run.request.job, part.warnings);
+  if (run.job.outline) part.outline = outline_of_job(run.job, run.request.job);
   return part;
 }
 
@@ -284,7 +285,7 @@ void add_edges(geometry::PartSpec& spec, const AsMachined& part) {
 }
 
 design::ElementArray array_shape(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
-  design::ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}};
+  design::ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}, part.outline};
   if (part.planes)
     array.facet_planes = design::FacetPlanesFile{facets_file, facets_file};
   else

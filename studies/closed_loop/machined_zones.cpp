@@ -172,6 +172,7 @@ design::ZonedPart machined_zones(const fabrication::Job& job, const std::filesys
     part.changes[z].push_back(change_of("surface.dihedral_error_arcmin", errors.dihedral_error_arcmin));
     part.changes[z].push_back(change_of("surface.facet_tilt_arcmin", errors.facet_tilt_arcmin));
   }
+  part.outline = design::with_absolute_path(std::move(part.outline));
   for (design::ElementsOfZone& of_zone : part.elements)
     if (of_zone.mask) of_zone.mask->name = std::filesystem::absolute(of_zone.mask->file).string();
   if (cut < designed.size())

@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <system_error>
 
 #include "design/io/design_reader.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/outline/plan_region.h"
 
 namespace retrace::studies {
 namespace {
@@ -88,6 +90,35 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
   return {};
 }
 
+namespace {
+
+/// Returns true if two outlines have the same borders within rounding errors.
+bool has_same_borders(const geometry::PlanRegion& a, const geometry::PlanRegion& b) {
+  constexpr double kSameFraction = 1e-9;
+  const double near_mm = kSameFraction * a.box_mm.size().norm();
+  const auto is_near = [&](const geometry::Vec2& p, const geometry::Vec2& q) { return (p - q).norm() <= near_mm; };
+  return std::ranges::equal(a.whole.borders, b.whole.borders, [&](const auto& one, const auto& other) {
+    return std::ranges::equal(one, other, is_near);
+  });
+}
+
+}  // namespace
+
+design::OutlineKeys outline_of_job(const Job& job, const fs::path& job_file) {
+  const geometry::PlanRegion& plan = *job.array.outline;
+  const std::optional<design::Design> design = design_of_job(job, job_file);
+  const design::ElementArray* const array = design ? design->elements() : nullptr;
+  if (array != nullptr && array->part.array.outline && has_same_borders(*array->part.array.outline, plan))
+    return design::with_absolute_path(array->outline);
+  for (std::size_t k = 1; k < plan.outline.loops.size(); ++k)
+    if (!geometry::is_circle(plan.outline.loops[k]))
+      throw InputError(
+          Field{"as_machined"},
+          "a design can contain holes that are not round only as a DXF file, which is taken from the job's "
+          "design, but the design does not exist at the path that the job gives, or has another outline");
+  return {};
+}
+
 geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   geometry::PartSpec part = part_on_substrate(job);
   // Margins of a design are flat, but the machined cavities of cube corners extend into them. If cube corners have
@@ -96,8 +127,12 @@ geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   if (!has_planes || cuts_prisms(job)) {
     part.array.x_offset_mm = job.array.x_offset_mm;
     part.array.y_offset_mm = job.array.y_offset_mm;
+  } else if (part.array.outline) {
+    part.array.x_offset_mm = part.array.y_offset_mm = 0.0;
+    part.array.outline = std::make_shared<const geometry::PlanRegion>(geometry::without_margin(*part.array.outline));
   }
-  if (cuts_prisms(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
+  if (cuts_prisms(job) && !job.substrate && !part.array.outline &&
+      part.array.arrangement != geometry::Arrangement::offset)
     part.array.partial_elements = geometry::PartialElements::cut;
   return part;
 }

@@ -106,8 +106,11 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   PlanPanel panel;
   panel.title = title;
   panel.outline_mm = part.outline;
-  if (part.spec.array.outline && !part.spec.array.outline->is_box())
-    panel.outline_mm = part.spec.array.outline->whole.borders.front();
+  if (const auto& outline = part.spec.array.outline; outline && !outline->is_box()) {
+    const std::vector<geometry::PolygonLoop>& borders = outline->whole.borders;
+    panel.outline_mm = borders.front();
+    panel.holes_mm.assign(borders.begin() + 1, borders.end());
+  }
   if (faces_near(part, window) <= kMaxPlanFaces)
     panel.view = plan_view(part, window);
   else
@@ -276,12 +279,28 @@ std::string zone_text(const design::ZonedPart& zoned, const Part& part, std::siz
   return text + fmt::format(", {:.1f} % of the area", 100.0 * elements.area_mm2 / all_mm2);
 }
 
+/// Adds the regions of a zone as far as they are inside the outline of the part.
+void add_regions(PlanZone& zone, const geometry::ZonedSpec& spec, const std::vector<geometry::Polygon>& regions) {
+  for (const geometry::Polygon& region : regions) {
+    const std::vector<geometry::Polygon> inside = geometry::within_plate(spec, region);
+    if (inside.empty()) continue;
+    const auto largest =
+        std::ranges::max_element(inside, {}, [](const auto& polygon) { return geometry::area(polygon); });
+    zone.labels_mm.push_back(geometry::centroid(*largest));
+    zone.regions_mm.insert(zone.regions_mm.end(), inside.begin(), inside.end());
+    if (spec.cutting_outline() == nullptr) continue;
+    for (std::size_t k = 0; k < region.size(); ++k)
+      for (const geometry::Polygon& piece : spec.cutting_outline()->whole.pieces)
+        if (const auto side = geometry::clip_segment(region[k], region[(k + 1) % region.size()], piece))
+          zone.sides_mm.emplace_back((*side)[0], (*side)[1]);
+  }
+}
+
 std::vector<PlanZone> zones_of(const design::ZonedPart& zoned, const Part& part) {
   std::vector<PlanZone> zones;
   for (std::size_t k = 0; k < part.zones.size(); ++k) {
     PlanZone zone;
-    if (!zoned.spec.is_by_cell) zone.regions_mm = zoned.spec.zones[k].regions;
-    for (const geometry::Polygon& region : zone.regions_mm) zone.labels_mm.push_back(geometry::centroid(region));
+    if (!zoned.spec.is_by_cell) add_regions(zone, zoned.spec, zoned.spec.zones[k].regions);
     if (zone.labels_mm.empty() && part.zones[k].cells > 0) zone.labels_mm.push_back(label_of_cells(part, k));
     zone.description = zone_text(zoned, part, k);
     zones.push_back(std::move(zone));

@@ -8,6 +8,7 @@
 
 #include "core/warning.h"
 #include "design/design.h"
+#include "geometry/outline/outline.h"
 #include "studies/drawing/part_views.h"
 
 namespace retrace::studies {
@@ -33,15 +34,20 @@ struct AngleDimension {
 /// Zone of a part in the plan.
 struct PlanZone {
   std::vector<geometry::Polygon> regions_mm;  ///< regions of the zone; empty if the zone consists of elements
-  std::vector<geometry::Vec2> labels_mm;      ///< positions of the number of the zone, within the zone
-  std::string description;                    ///< such as "1307 full elements and 148 cut, 50.0 % of the area"
+  /// Sides of the regions inside the outline of the part. Empty for a rectangular part, where the sides of `regions_mm`
+  /// are the borders of the zone.
+  std::vector<PlanLine> sides_mm = {};
+  std::vector<geometry::Vec2> labels_mm;  ///< positions of the number of the zone, within the zone
+  std::string description;                ///< such as "1307 full elements and 148 cut, 50.0 % of the area"
 };
 
 struct PlanPanel {
   std::string title;
   PlanView view;
-  bool omits_faces = false;      ///< true: there are too many faces to draw
-  geometry::Polygon outline_mm;  ///< outline of the part; empty if the part continues in all directions
+  bool omits_faces = false;  ///< true: there are too many faces to draw
+  /// Outer border of the part, counter-clockwise. Empty if the part continues in all directions.
+  geometry::PolygonLoop outline_mm;
+  std::vector<geometry::PolygonLoop> holes_mm = {};  ///< borders of holes, clockwise
   std::optional<geometry::Rectangle> period_mm;
   std::optional<geometry::Rectangle> detail_mm;  ///< window of the detail that another panel shows
   std::optional<double> circle_radius_mm;  ///< radius of the circle around the aperture of the dimensioned element

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "core/message_text.h"
@@ -23,6 +22,7 @@
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/io/mask_image.h"
+#include "geometry/outline/plan_region.h"
 #include "geometry/part/part.h"
 #include "geometry/part/zones.h"
 #include "requests/descriptions.h"
@@ -128,24 +128,6 @@ std::int64_t partial_elements(const PartSpec& part) {
   nominal.edges = {};
   nominal.scratches.clear();
   return geometry::build_part(nominal).elements_partial;
-}
-
-/// Replaces the outline of an array by a mask of the whole elements inside it.
-void replace_outline_by_pattern(geometry::ArrayLayout& array, const geometry::Element& element) {
-  using Position = std::pair<double, double>;
-  const auto position_of = [](const geometry::WholeElement& at) {
-    return Position(at.centre_mm.x(), at.centre_mm.y());
-  };
-  std::set<Position> inside;
-  for (const geometry::WholeElement& at : geometry::whole_elements(array, element)) inside.insert(position_of(at));
-  array.outline.reset();
-  std::vector<std::string> rows;
-  for (const std::int64_t columns : geometry::row_lengths(array, element))
-    rows.emplace_back(static_cast<std::size_t>(columns), '-');
-  for (const geometry::WholeElement& at : geometry::whole_elements(array, element))
-    if (inside.contains(position_of(at)))
-      rows[static_cast<std::size_t>(at.row)][static_cast<std::size_t>(at.column)] = '#';
-  array.pattern.assign(rows.rbegin(), rows.rend());
 }
 
 std::string cut_warning(const std::string& name, std::int64_t partial) {
@@ -344,11 +326,8 @@ GeneratedJob make_job(const design::Design& design, const JobRequest& request) {
   } else {
     job.element = element_of(design, request);
     job.array = design.part().array;
-    if (job.array.outline) {
-      if (design.part().substrate)
-        throw InputError(design.where("substrate.kind"), "not allowed together with [outline] for a job");
-      replace_outline_by_pattern(job.array, job.element);
-    }
+    if (job.array.outline && job.array.outline->is_box()) job.array.outline.reset();
+    if (job.array.outline) job.outline = fabrication::job_outline(*job.array.outline);
     job.substrate = design.part().substrate;
     if (!is_prism(design.part())) job.angle_errors = design.part().angle_errors;
   }

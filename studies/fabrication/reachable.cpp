@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
@@ -13,6 +14,7 @@
 #include "geometry/elements/facet_planes.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/io/facet_planes_reader.h"
+#include "geometry/outline/plan_region.h"
 
 namespace retrace::studies {
 namespace {
@@ -61,6 +63,12 @@ design::Design reached(const design::Design& design, const std::string& facets_f
   array.part.array.partial_elements = geometry::PartialElements::omit;
   array.part.array.x_length_mm = part.array.x_length_mm;
   array.part.array.y_length_mm = part.array.y_length_mm;
+  if (part.array.outline) {
+    // The machined cavities extend into the margin, so the table of planes contains it.
+    array.part.array.outline =
+        std::make_shared<const geometry::PlanRegion>(geometry::without_margin(*part.array.outline));
+    array.outline = design::with_absolute_path(design.elements()->outline);
+  }
   array.part.thickness_mm = part.thickness_mm;
   array.facet_planes = design::FacetPlanesFile{facets_file, facets_file};
   reached.shape = std::move(array);
@@ -73,7 +81,7 @@ design::Design reached(const design::Design& design, const std::string& facets_f
 }
 
 void check_design(const design::Design& design, const JobRequest& request) {
-  design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true, .outlines = false});
+  design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError(Field{"reachable"},
@@ -112,8 +120,9 @@ ReachablePart reachable_part(const design::Design& design, const JobRequest& req
   for (const geometry::WholeElement& whole : geometry::whole_elements(part.array, part.element))
     planes.push_back(element_at(part.element, result.reach, middle_of(part) + whole.centre_mm, whole.is_rotated));
   if (planes.empty())
-    throw InputError({design.source_name(), 0, "array.x_length_mm"},
-                     "the array must be large enough for at least one whole element");
+    throw InputError(
+        part.array.outline ? design.where("outline") : InputLocation{design.source_name(), 0, "array.x_length_mm"},
+        "the array must be large enough for at least one whole element");
   result.elements = static_cast<std::int64_t>(planes.size());
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
   if (hexagonal != nullptr && part.array.arrangement != geometry::Arrangement::single)

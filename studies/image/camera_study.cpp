@@ -67,12 +67,8 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                          std::shared_ptr<const Background> background)
     : design_(std::move(design)), request_(std::move(request)), background_(std::move(background)) {
   requests::check(request_);
-  design::require_supported(design_, {.what = "a camera image",
-                                      .balls = true,
-                                      .solids = true,
-                                      .entrances = true,
-                                      .wet_backs = true,
-                                      .notches = false});
+  design::require_supported(
+      design_, {.what = "a camera image", .balls = true, .solids = true, .entrances = true, .wet_backs = true});
   lamp_ = lamp_of(request_);
   const materials::SpectralCurve dye = read_dye(request_.dye);
   if (!background_) background_ = background_of(request_);

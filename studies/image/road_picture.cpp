@@ -63,12 +63,14 @@ std::vector<Glow> glows_of(const RoadScene& s, const Vec3& centre, const Vec3& e
   const int rows = cells_over(box.size().y());
   const Vec2 cell = box.size().cwiseQuotient(Vec2(columns, rows));
   cell_rad = cell.maxCoeff() / distance;
+  const std::vector<Polygon> face = s.face();
   std::vector<Glow> glows;
   for (int k = 0; k < columns * rows; ++k) {
     const Vec2 lower = box.lower + cell.cwiseProduct(Vec2(k % columns, k / columns));
     const geometry::Rectangle part{lower, lower + cell};
     const auto within = [&](const Polygon& polygon) { return geometry::area(geometry::clip(polygon, part, 0.0)); };
-    double area = within(s.outline);
+    double area = 0.0;
+    for (const Polygon& polygon : face) area += within(polygon);
     for (const Polygon& polygon : s.black) area -= within(polygon);
     for (const Polygon& polygon : s.windows) area += within(polygon);
     const Vec2 middle = part.centre();
@@ -142,16 +144,20 @@ class Painter {
   /// \param polygon convex polygon in the scene
   void solid(const std::vector<Vec3>& polygon, const Surface& surface) { area(projected(polygon), surface); }
   /// Draws a reflector with black parts.
-  /// \param outline convex polygon in the scene
-  /// \param black convex polygons within the outline that return no light
+  /// \param face convex polygons in the scene that make up the reflector
+  /// \param black convex polygons within the reflector that return no light
   /// \param windows convex polygons within the black ones that return light
-  void reflector(const std::vector<Vec3>& outline, const std::vector<std::vector<Vec3>>& black,
+  void reflector(const std::vector<std::vector<Vec3>>& face, const std::vector<std::vector<Vec3>>& black,
                  const std::vector<std::vector<Vec3>>& windows, const Light& light, const Surface& black_surface) {
     struct Fractions {
       double all = 0.0, bright = 0.0;
     };
     std::map<std::size_t, Fractions> fractions;
-    cover(projected(outline), [&](std::size_t k, double fraction) { fractions[k] = {fraction, fraction}; });
+    for (const auto& part : face)
+      cover(projected(part), [&](std::size_t k, double fraction) {
+        Fractions& of_pixel = fractions[k];
+        of_pixel.all = of_pixel.bright = std::min(1.0, of_pixel.all + fraction);
+      });
     for (const auto& part : black)
       cover(projected(part), [&](std::size_t k, double fraction) { fractions[k].bright -= fraction; });
     for (const auto& part : windows)
@@ -329,7 +335,7 @@ class Surfaces {
         for (const Polygon& polygon : polygons) result.push_back(at_reflectors(geometry::moved(polygon, position)));
         return result;
       };
-      painter_.reflector(at_reflectors(geometry::moved(s_.outline, position)), placed(s_.black), placed(s_.windows),
+      painter_.reflector(placed(s_.face()), placed(s_.black), placed(s_.windows),
                          {view_.reflectors.at(k).luminance, s_.tint}, diffuse(kBlack, kGrey));
     }
   }

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "geometry/outline/convex_decomposition.h"
 
 namespace retrace::studies {
 namespace {
@@ -115,6 +118,14 @@ void check_on_car(const RoadScene& scene, double height_m, double lateral_m) {
                                  fixed(scene.car_tall - half.y(), 4), shortest(height_m)));
 }
 
+/// Returns the convex hull of convex polygons. A single polygon is returned unchanged.
+Polygon hull_of(const std::vector<Polygon>& polygons) {
+  if (polygons.size() == 1) return polygons.front();
+  std::vector<Vec2> corners;
+  for (const Polygon& polygon : polygons) corners.insert(corners.end(), polygon.begin(), polygon.end());
+  return geometry::convex_hull(std::move(corners));
+}
+
 }  // namespace
 
 Vec2 RoadScene::size() const {
@@ -122,13 +133,14 @@ Vec2 RoadScene::size() const {
 }
 
 double RoadScene::area() const {
-  double sum = geometry::area(outline);
+  double sum = 0.0;
+  for (const Polygon& part : face()) sum += geometry::area(part);
   for (const Polygon& part : black) sum -= geometry::area(part);
   for (const Polygon& part : windows) sum += geometry::area(part);
   return sum;
 }
 
-RoadScene scene_of(const RoadRequest& request, const Polygon& design_outline_mm) {
+RoadScene scene_of(const RoadRequest& request, const std::vector<Polygon>& design_face_mm) {
   RoadScene scene;
   scene.mount = request.mount == "sign" ? RoadMount::sign : RoadMount::car;
   scene.lamp_height = request.lamp_height_m;
@@ -142,16 +154,24 @@ RoadScene scene_of(const RoadRequest& request, const Polygon& design_outline_mm)
   scene.field_deg = request.field_deg;
 
   const Defaults defaults = defaults_of(scene.mount);
-  const bool is_own = request.outline == "auto" && !design_outline_mm.empty();
+  const bool is_own = request.outline == "auto" && !design_face_mm.empty();
   Vec2 size_mm = defaults.size_mm;
   Polygon unit = unit_outline(request.outline == "auto" ? defaults.outline : std::string_view(request.outline));
-  if (!design_outline_mm.empty()) {
-    const geometry::Rectangle box = geometry::bounding_box(design_outline_mm);
+  std::vector<Polygon> unit_pieces;
+  if (!design_face_mm.empty()) {
+    const Polygon hull_mm = hull_of(design_face_mm);
+    const geometry::Rectangle box = geometry::bounding_box(hull_mm);
     size_mm = box.size();
-    if (is_own) unit = scaled(geometry::moved(design_outline_mm, -box.centre()), box.size().cwiseInverse());
+    const auto in_unit = [&](const Polygon& polygon) {
+      return scaled(geometry::moved(polygon, -box.centre()), box.size().cwiseInverse());
+    };
+    if (is_own) unit = in_unit(hull_mm);
+    if (is_own && design_face_mm.size() > 1)
+      std::ranges::transform(design_face_mm, std::back_inserter(unit_pieces), in_unit);
   }
   if (request.reflector_mm) size_mm = {(*request.reflector_mm)[0], (*request.reflector_mm)[1]};
   scene.outline = scaled(unit, 1e-3 * size_mm);
+  for (const Polygon& piece : unit_pieces) scene.pieces.push_back(scaled(piece, 1e-3 * size_mm));
 
   const double height_m = request.reflector_height_m.value_or(defaults.height_m);
   const double lateral_m = request.lateral_m.value_or(defaults.lateral_m);
@@ -164,6 +184,9 @@ RoadScene scene_of(const RoadRequest& request, const Polygon& design_outline_mm)
     scene.reflectors = {{-lateral_m, height_m, 0.0}, {lateral_m, height_m, 0.0}};
     return scene;
   }
+  if (!scene.pieces.empty())
+    throw InputError(Field{"outline"},
+                     "must be the outline of the sign, because the design has notches or holes, got \"auto\"");
   scene.reflectors = {{lateral_m, height_m, 0.0}};
   const double side = 1e-3 * size_mm.minCoeff();
   scene.black = {inset(scene.outline, kLineFrom * side)};

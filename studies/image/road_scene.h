@@ -33,8 +33,11 @@ struct RoadScene {
   double pupil_diameter = 0.007;
 
   std::vector<geometry::Vec3> reflectors = {{-0.72, 0.6, 0.0}, {0.72, 0.6, 0.0}};  ///< centres
-  /// Outline of each reflector or of the sign, relative to its centre; convex, counter-clockwise.
+  /// Outline of each reflector or of the sign, relative to its centre; convex, counter-clockwise. For a reflector with
+  /// notches or holes, it is the convex hull.
   geometry::Polygon outline = {{-0.06, -0.0125}, {0.06, -0.0125}, {0.06, 0.0125}, {-0.06, 0.0125}};
+  /// Convex polygons that make up a reflector with notches or holes; empty for other reflectors.
+  std::vector<geometry::Polygon> pieces = {};
   /// Black areas within the outline of a sign, and retroreflective areas within black areas. The black line along the
   /// border is the first black area minus the first window. The symbol consists of black areas within this window.
   std::vector<geometry::Polygon> black, windows;
@@ -59,6 +62,10 @@ struct RoadScene {
   std::size_t rows = 440;
   double field_deg = 13.0;  ///< angular width of each picture; 1 to 90
 
+  /// Returns convex polygons that make up a reflector or the sign.
+  std::vector<geometry::Polygon> face() const {
+    return pieces.empty() ? std::vector<geometry::Polygon>{outline} : pieces;
+  }
   /// Returns the size of the bounding rectangle of a reflector or a sign, in m.
   geometry::Vec2 size() const;
   /// Returns the retroreflective area of one reflector or of the sign, in m^2.
@@ -66,10 +73,10 @@ struct RoadScene {
 };
 
 /// Returns the scene of a request. The photometric data of the lamp, the dye and the tint are not set.
-/// \param design_outline_mm outline of a finite design; empty for an infinite design
+/// \param design_face_mm convex polygons that make up the face of a finite design; empty for an infinite design
 /// \throw InputError at the field of the request if a reflector is too large for the car, outside of the car or below
-///        the road, if two reflectors overlap, or if the mast does not reach the sign
-RoadScene scene_of(const RoadRequest& request, const geometry::Polygon& design_outline_mm);
+///        the road, if two reflectors overlap, if the mast does not reach the sign, or if a sign has notches or holes
+RoadScene scene_of(const RoadRequest& request, const std::vector<geometry::Polygon>& design_face_mm);
 
 /// Returns the positions of the left and the right headlamp.
 /// \param distance_m distance from the headlamps to the reflectors, along the road

@@ -26,10 +26,11 @@ constexpr std::size_t kSpansOfRoad = 1, kSpansOfTint = 2;
 // Fraction of the progress for the computation of the colour of the light.
 constexpr double kProgressOfColour = 0.3;
 
-/// Returns the outline of a finite design, in mm. Returns an empty polygon for an infinite design.
-geometry::Polygon outline_of(const design::Design& design) {
+/// Returns the convex polygons that make up the entrance face of a finite design, in mm. Returns none for an infinite
+/// design.
+std::vector<geometry::Polygon> face_of(const design::Design& design) {
   if (design.is_infinite()) return {};
-  return design::make_model(design, materials::MaterialLibrary::shipped()).part.outline;
+  return geometry::entrance_polygons(design::make_model(design, materials::MaterialLibrary::shipped()).part);
 }
 
 PhotometrySettings photometry_at(const RoadScene& s, double distance_m, std::uint32_t seed) {
@@ -113,9 +114,9 @@ std::optional<std::array<double, 3>> tint_of(const design::Design& design, const
 
 RoadStudy::RoadStudy(design::Design design, RoadRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
-  design::require_supported(design_, {.what = "retrace image", .solids = true, .wet_backs = true, .notches = false});
+  design::require_supported(design_, {.what = "retrace image", .solids = true, .wet_backs = true});
   requests::check(request_);
-  scene_ = scene_of(request_, outline_of(design_));
+  scene_ = scene_of(request_, face_of(design_));
   if (!request_.lamp.empty()) scene_.lamp = read_lamp(request_.lamp, Field{"lamp"});
   dye_absorption_per_mm_ = read_dye(request_.dye);
   if (!dye_absorption_per_mm_.values.empty()) scene_.dye = request_.dye;

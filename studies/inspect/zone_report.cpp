@@ -1,11 +1,13 @@
 #include "studies/inspect/zone_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/light_path.h"
+#include "raytrace/sampling/entrance_sampler.h"
 
 namespace retrace::studies {
 namespace {
@@ -29,6 +31,7 @@ class LateralShiftSampler {
         size_mm_(design.zoned()->spec.size_mm),
         surface_(model.part, 0.5 * size_mm_) {
     optics_.facet_scatter = surface_models::Smooth{};
+    if (design.zoned()->spec.cutting_outline() != nullptr) sampler_.emplace(model.part);
   }
 
   /// Sums over the returned light from one direction. Only light that first hits the back in one certain zone counts.
@@ -47,11 +50,14 @@ class LateralShiftSampler {
   }
 
  private:
-  /// Returns the k-th point of a low-discrepancy sequence on the plate (Roberts 2018, with the plastic number).
+  /// Returns the k-th point of a low-discrepancy sequence on the plate (Roberts 2018, with the plastic number). For a
+  /// plate with an outline, the points of the unit square are mapped to the area inside the outline.
   Vec2 place(int k) const {
     constexpr double plastic = 1.32471795724474602596;
     const auto part = [&](double step) { return std::fmod(0.5 + (k + 1) * step, 1.0); };
-    return Vec2(part(1.0 / plastic), part(1.0 / (plastic * plastic))).cwiseProduct(size_mm_);
+    const std::array<double, 2> at = {part(1.0 / plastic), part(1.0 / (plastic * plastic))};
+    if (sampler_) return (*sampler_)(at) + sampler_->centre_mm();
+    return Vec2(at[0], at[1]).cwiseProduct(size_mm_);
   }
 
   /// Returns the zone whose cells contain a facet.
@@ -59,6 +65,7 @@ class LateralShiftSampler {
     const std::vector<geometry::PatchCell>& cells = model_.part.patches.front().cells;
     const auto after = std::ranges::upper_bound(cells, facet, {}, &geometry::PatchCell::first_facet);
     auto cell = static_cast<std::size_t>(after - cells.begin()) - 1;
+    cell = cells[cell].first_of_element.value_or(static_cast<std::uint32_t>(cell));  // sides of notches and holes
     std::size_t zone = 0;
     for (; cell >= zones_[zone].cells; ++zone) cell -= zones_[zone].cells;
     return zone;
@@ -87,6 +94,7 @@ class LateralShiftSampler {
   raytrace::Optics optics_;
   Vec2 size_mm_;
   raytrace::BackSurface surface_;
+  std::optional<raytrace::EntranceSampler> sampler_;  ///< set for a plate with an outline
 };
 
 }  // namespace

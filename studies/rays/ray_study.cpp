@@ -92,23 +92,11 @@ RayRequest settings_of(const Request& request, bool stokes) {
           .seed = request.seed};
 }
 
-/// Returns the design.
-/// \throw InputError for an outline with notches or holes
-design::Design with_convex_outline(design::Design design) {
-  design::require_supported(design, {.what = "tracing rays of a file or an emitter",
-                                     .balls = true,
-                                     .solids = true,
-                                     .entrances = true,
-                                     .wet_backs = true,
-                                     .notches = false});
-  return design;
-}
-
 }  // namespace
 
 struct RayStudy::Impl {
   Impl(design::Design d, RayRequest r)
-      : design(with_convex_outline(std::move(d))),
+      : design(std::move(d)),
         request(std::move(r)),
         library(materials::MaterialLibrary::shipped()),
         model(design::make_model(design, library, design::Entrances::any)),

@@ -15,6 +15,7 @@ retrace_test(command_tests
     app/modules_test.cpp
     app/number_list_test.cpp
     app/option_needs_test.cpp
+    app/outline_command_test.cpp
     app/photometry_test.cpp
     app/plane_test.cpp
     app/program.cpp

@@ -77,6 +77,16 @@ TEST(DxfOutline, LayersAreSelected) {
   EXPECT_EQ(refusal(text, {"OTHER", {}}), "o.dxf");
 }
 
+/// Entities on other layers may have any size, and values that the outline must not have.
+TEST(DxfOutline, LimitsApplyToTheSelectedLayer) {
+  std::string large = "0\nLWPOLYLINE\n8\nNOTES\n90\n30000\n70\n0\n";
+  for (int k = 0; k < 30000; ++k) large += "10\n" + std::to_string(k) + "\n20\n0\n";
+  const std::string far = "0\nLINE\n10\n1e12\n20\nx\n8\nNOTES\n11\n0\n21\n0\n";
+  EXPECT_NEAR(area_of(file(large + stadium() + far), {"CUT", {}}), kStadium, 1e-9);
+  EXPECT_EQ(refusal(file(far + stadium()), {"NOTES", {}}), "o.dxf:8");
+  EXPECT_NE(refusal(file(large + stadium())), "accepted");
+}
+
 TEST(DxfOutline, FaultsAreReportedAtTheirLine) {
   EXPECT_EQ(refusal(file(line("0,0", "20,0") + line("20,0", "0,10"))), "o.dxf:18");
   EXPECT_EQ(refusal(file(line("0,0", "20,0") + line("20,0", "0,10") + line("0,10", "0,0.01"))), "o.dxf:30");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -143,6 +144,91 @@ TEST(Outline, RandomOutlinesKeepTheirAreas) {
   }
   EXPECT_GT(concave, 50);
   EXPECT_LT(concave, 195);
+}
+
+/// Returns the area by Green's theorem: the integral of (x dy - y dx) / 2 along the border, with Gauss's rule of five
+/// points on 16 portions of each arc.
+double area_by_green(const Outline& outline) {
+  constexpr std::array<double, 5> kAt = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                         0.9061798459386640};
+  constexpr std::array<double, 5> kWeight = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                             0.4786286704993665, 0.2369268850561891};
+  constexpr int kPortions = 16;
+  double sum = 0.0;
+  for (const OutlineLoop& loop : outline.loops)
+    for (const OutlineSide& side : loop) {
+      if (!side.is_arc()) {
+        sum += 0.5 * (side.from_mm.x() * side.to_mm.y() - side.from_mm.y() * side.to_mm.x());
+        continue;
+      }
+      // Centre and angles from the chord and the sagitta: the arc passes through the point beside the chord's centre.
+      const Vec2 chord = side.to_mm - side.from_mm;
+      const double sagitta = 0.5 * side.bulge * chord.norm();
+      const Vec2 right = Vec2(chord.y(), -chord.x()) / chord.norm();
+      const double radius = (0.25 * chord.squaredNorm() + sagitta * sagitta) / (2.0 * sagitta);
+      const Vec2 centre = 0.5 * (side.from_mm + side.to_mm) + (sagitta - radius) * right;
+      const Vec2 start = side.from_mm - centre;
+      const double sweep = 4.0 * std::atan(2.0 * sagitta / chord.norm());
+      for (int k = 0; k < kPortions; ++k)
+        for (std::size_t i = 0; i < kAt.size(); ++i) {
+          const double t = (k + 0.5 + 0.5 * kAt[i]) / kPortions * sweep;
+          const Vec2 v(std::cos(t) * start.x() - std::sin(t) * start.y(),
+                       std::sin(t) * start.x() + std::cos(t) * start.y());
+          const Vec2 p = centre + v;
+          sum += 0.5 * (p.x() * v.x() + p.y() * v.y()) * 0.5 * kWeight[i] * sweep / kPortions;
+        }
+    }
+  return sum;
+}
+
+TEST(Outline, ReportedAreasAgreeWithGreensTheorem) {
+  std::mt19937 random(23);
+  for (int k = 0; k < 200; ++k) {
+    const Outline outline = random_outline(random, 20.0);
+    EXPECT_NEAR(outline.area_mm2() / area_by_green(outline), 1.0, 1e-9);
+  }
+}
+
+TEST(Outline, CoordinatesDivideTheArea) {
+  std::mt19937 random(29);
+  for (int k = 0; k < 50; ++k) {
+    const PlanRegion plan = plan_of(random_outline(random, 20.0), 0.0, 0.02);
+    const double all = sum_of_areas(plan.whole.pieces);
+    for (const Eigen::Index axis : {0, 1})
+      for (const double fraction : {0.1, 0.5, 0.83}) {
+        Rectangle below = plan.box_mm;
+        below.upper[axis] = coordinate_of_area_fraction(plan, plan.box_mm, axis, fraction);
+        double sum = 0.0;
+        for (const Polygon& piece : plan.whole.pieces)
+          if (const Polygon part = clip(piece, below, 1e-12); !part.empty()) sum += area(part);
+        EXPECT_NEAR(sum / all, fraction, 1e-9);
+      }
+  }
+}
+
+TEST(Outline, PlansWithoutMarginHaveElementsUpToTheBorder) {
+  const PlanRegion plan = without_margin(plan_of(oriented({circle({0, 0}, 10), circle({1, 2}, 3)}), 1.0));
+  EXPECT_EQ(plan.margin_mm, 0.0);
+  EXPECT_TRUE(plan.margin.pieces.empty());
+  EXPECT_NEAR(sum_of_areas(plan.elements.pieces), kPi * 91.0, 1e-9);
+}
+
+TEST(Outline, SegmentsAreClipped) {
+  const Polygon square = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  const auto inside = clip_segment({-1, 1}, {3, 1}, square);
+  ASSERT_TRUE(inside);
+  EXPECT_NEAR(((*inside)[0] - Vec2(0, 1)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(((*inside)[1] - Vec2(2, 1)).norm(), 0.0, 1e-15);
+  EXPECT_FALSE(clip_segment({-1, 3}, {3, 3}, square));
+  EXPECT_FALSE(clip_segment({-1, 0.5}, {0.5, -1}, square));
+  EXPECT_TRUE(clip_segment({0.5, 0.5}, {1, 1}, square));
+}
+
+TEST(Outline, CirclesAreRecognised) {
+  EXPECT_TRUE(is_circle(circle({3, 4}, 2)));
+  EXPECT_TRUE(is_circle(reversed(circle({3, 4}, 2))));
+  EXPECT_FALSE(is_circle(rectangle(2, 3)));
+  EXPECT_FALSE(is_circle(OutlineLoop{{{0, 0}, {2, 0}, 1.0}, {{2, 0}, {0, 0}, 0.3}}));
 }
 
 TEST(Outline, ReversedAndMovedOutlinesAreEqual) {

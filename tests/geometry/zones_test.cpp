@@ -10,11 +10,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"
+#include "geometry/part/mould_boundary.h"
+#include "tests/geometry/outline_random.h"
 #include "tests/geometry/part_checks.h"
 #include "tests/support/refusals.h"
 
@@ -424,6 +428,117 @@ TEST(Zones, ThatDoNotCoverThePartAreFound) {
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 - 1e-8, 0, 4, 3)}), 1);
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2 + 1e-13, 0, 4, 3)}), std::nullopt);
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2.5, 0, 4, 3)}), 1);
+}
+
+/// Returns a plate with an outline.
+ZonedSpec outlined_plate(const Outline& outline, double margin_mm, std::vector<PartZone> zones) {
+  std::optional<OutlineFault> fault;
+  const auto plan = std::make_shared<const PlanRegion>(plan_region(outline, margin_mm, 0.01, fault));
+  EXPECT_FALSE(fault) << fault->text;
+  ZonedSpec spec = plate(plan->box_mm.size(), std::move(zones));
+  spec.outline = plan;
+  return spec;
+}
+/// Returns a part without zones that has the outline of a plate with zones.
+Part alone(PartSpec spec, const ZonedSpec& zoned) {
+  spec.array.outline = zoned.outline;
+  spec.array.x_offset_mm = spec.array.y_offset_mm = zoned.outline->margin_mm;
+  return alone(spec, zoned.size_mm);
+}
+Outline notched() {
+  return oriented({rounded(
+      polygon_of_corners({{0, 0}, {5.2, 0}, {5.2, 2.0}, {2.6, 2.0}, {2.6, 4.0}, {0, 4.0}}, {0.1, 0, 0, 0, 0, 0}),
+      0.3)});
+}
+Outline holed() {
+  return oriented({circle({0, 0}, 2.5), circle({0.4, 0.3}, 0.7)});
+}
+
+TEST(ZonesWithOutline, ARectangleIsTheRectangle) {
+  const Vec2 size(5.3, 4.1);
+  const std::vector<PartZone> zones = {{{box(0, 0, 2.4, 4.1)}, 0.0, hexagons(0.9)},
+                                       {{box(2.4, 0, 5.3, 4.1)}, 30.0, hexagons(0.7)}};
+  ZonedSpec spec = outlined_plate(oriented({polygon_of_corners({{1, 1}, {6.3, 1}, {6.3, 5.1}, {1, 5.1}})}), 0.0, zones);
+  EXPECT_FALSE(fault_of_zones(spec));
+  const Part a = build_part(plate(spec.size_mm, zones));
+  const Part b = build_part(spec);
+  ASSERT_EQ(a.patches[0].vertices.size(), b.patches[0].vertices.size());
+  for (std::size_t k = 0; k < a.patches[0].vertices.size(); ++k)
+    EXPECT_LT((a.patches[0].vertices[k] - b.patches[0].vertices[k]).norm(), 1e-12);
+  EXPECT_NEAR(a.entrance_area_mm2, b.entrance_area_mm2, 1e-12);
+  EXPECT_LT((spec.size_mm - size).norm(), 1e-12);
+}
+
+// A plate that one zone covers is the part without zones, for regions and for sets of elements.
+TEST(ZonesWithOutline, OneZoneIsThePartItself) {
+  for (const Outline& outline : {notched(), holed()})
+    for (const double margin_mm : {0.0, 0.15})
+      for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
+        PartSpec kind = hexagons(0.5);
+        kind.array.partial_elements = partial;
+        ZonedSpec spec = outlined_plate(outline, margin_mm, {{{}, 0.0, kind}});
+        const Part part = alone(kind, spec);
+        spec.zones[0].regions = {box(0, 0, spec.size_mm.x(), spec.size_mm.y())};
+        ZonedSpec by_cell = spec;
+        by_cell.is_by_cell = true;
+        by_cell.zones[0].regions.clear();
+        for (const ArrayCell& cell : plan_of_array(array_of_cells(by_cell, by_cell.zones[0])).cells)
+          by_cell.zones[0].cells.push_back(cell.number);
+        for (const ZonedSpec& zoned : {spec, by_cell}) {
+          EXPECT_FALSE(fault_of_zones(zoned));
+          const Part own = build_part(zoned);
+          EXPECT_EQ(own.elements_full, part.elements_full);
+          EXPECT_EQ(own.elements_partial, part.elements_partial);
+          EXPECT_NEAR(own.retro_facet_area_mm2, part.retro_facet_area_mm2, 1e-8);
+          EXPECT_NEAR(own.zones[0].area_mm2, zoned.area_mm2(), 1e-8);
+          EXPECT_EQ(own.entrance_pieces.size(), part.entrance_pieces.size());
+          EXPECT_EQ(static_cast<std::int64_t>(whole_elements(zoned)[0].size()), part.elements_full);
+          expect_closed(own);
+        }
+      }
+}
+
+TEST(ZonesWithOutline, SolidsAreClosed) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const std::vector<PartSpec> kinds = {prisms(0.3, 0.25, Arrangement::offset), hexagons(0.4), triangles(0.5)};
+  for (int trial = 0; trial < 12; ++trial) {
+    SCOPED_TRACE(trial);
+    const Outline outline = random_outline(random, 2.0);
+    std::optional<OutlineFault> fault;
+    const double margin_mm = trial % 3 == 0 ? 0.05 : 0.0;
+    plan_region(outline, margin_mm, 0.01, fault);
+    if (fault) continue;
+    ZonedSpec spec = outlined_plate(outline, margin_mm, {});
+    const Vec2 size = spec.size_mm;
+    const double middle = (0.3 + 0.4 * unit(random)) * size.x();
+    for (const auto& [from, to] : {std::pair{0.0, middle}, {middle, size.x()}})
+      spec.zones.push_back({{box(from, 0, to, size.y())},
+                            trial % 2 == 0 ? 0.0 : std::floor(360.0 * unit(random)),
+                            kinds[static_cast<std::size_t>(trial) % kinds.size()]});
+    spec.zones[1].elements.array.partial_elements = PartialElements::omit;
+    EXPECT_FALSE(fault_of_zones(spec));
+    const Part part = build_part(spec);
+    expect_closed(part);
+    EXPECT_TRUE(check_boundary(mould_boundary(part, 0.5)).is_closed);
+    EXPECT_NEAR(part.zones[0].area_mm2 + part.zones[1].area_mm2, spec.area_mm2(), 1e-7);
+    EXPECT_NEAR(part.entrance_area_mm2, spec.area_mm2(), 1e-9);
+  }
+}
+
+TEST(ZonesWithOutline, FaultsAreFound) {
+  const ZonedSpec one = outlined_plate(holed(), 0.0, {{{box(0, 0, 5, 3)}, 0.0, hexagons(0.5)}});
+  EXPECT_TRUE(fault_of_zones(one)) << "a part of the outline is not covered";
+  const ZonedSpec outside = outlined_plate(notched(), 0.0,
+                                           {{{box(0, 0, 5.2, 2.0), box(0, 2.0, 2.6, 4.0)}, 0.0, hexagons(0.5)},
+                                            {{box(2.6, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)}});
+  ASSERT_TRUE(fault_of_zones(outside)) << "the second zone is in the notch";
+  EXPECT_EQ(fault_of_zones(outside)->zone, 1U);
+  // Regions may overlap outside of the outline.
+  const ZonedSpec beyond = outlined_plate(notched(), 0.0,
+                                          {{{box(0, 0, 5.2, 2.0), box(2.6, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)},
+                                           {{box(0, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)}});
+  EXPECT_FALSE(fault_of_zones(beyond));
 }
 
 }  // namespace

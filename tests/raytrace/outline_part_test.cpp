@@ -2,19 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
 #include <numbers>
 #include <random>
 
-#include "geometry/elements/whole_elements.h"
-#include "geometry/outline/plan_region.h"
+#include "geometry/elements/facet_planes.h"
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/welded_part.h"
 #include "raytrace/sampling/entrance_sampler.h"
-#include "tests/geometry/outline_random.h"
 #include "tests/geometry/part_checks.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
+#include "tests/support/outlined_parts.h"
 #include "tests/support/sample_size.h"
 
 namespace retrace::testing::outline_part_test {
@@ -23,48 +21,11 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-/// Returns a part whose array is cut by an outline.
-PartSpec with_outline(PartSpec spec, const Outline& outline, double margin_mm = 0.0, double tolerance_mm = 0.01) {
-  std::optional<OutlineFault> fault;
-  const auto plan = std::make_shared<const PlanRegion>(plan_region(outline, margin_mm, tolerance_mm, fault));
-  EXPECT_FALSE(fault) << fault->text;
-  spec.array.x_length_mm = plan->box_mm.size().x();
-  spec.array.y_length_mm = plan->box_mm.size().y();
-  spec.array.x_offset_mm = spec.array.y_offset_mm = margin_mm;
-  spec.array.outline = plan;
-  return spec;
-}
-
-/// Returns a part with a random outline that has room for at least one element inside its margin.
-PartSpec with_random_outline(const PartSpec& base, std::mt19937& random, double radius_mm, double margin_mm) {
-  while (true) {
-    const Outline outline = random_outline(random, radius_mm);
-    std::optional<OutlineFault> fault;
-    plan_region(outline, margin_mm, 0.01, fault);
-    if (fault) continue;
-    PartSpec spec = with_outline(base, outline, margin_mm);
-    if (!whole_elements(spec.array, spec.element).empty()) return spec;
-  }
-}
-
 PartSpec prisms(double size_mm = 0.5) {
   return finite(RtpElement{size_mm, 0.8 * size_mm, 90.0}, Arrangement::offset, 0.0, 0.0, 0.8 * size_mm);
 }
 PartSpec hexagons(double aperture_mm = 0.6) {
   return finite(HexagonalCube{aperture_mm}, Arrangement::honeycomb, 0.0, 0.0, 0.5);
-}
-
-Outline oblique() {
-  return oriented({rounded(polygon_of_corners({{0, 0}, {2.0, 0}, {2.6, 1.4}, {0.6, 1.4}}), 0.3)});
-}
-/// An L-shaped outline with rounded corners and a curved side.
-Outline bent() {
-  return oriented({rounded(
-      polygon_of_corners({{0, 0}, {2.2, 0}, {2.2, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0, 2.0}}, {0.1, 0, 0, 0, 0, 0}),
-      0.15)});
-}
-Outline ring() {
-  return oriented({circle({0, 0}, 1.2), circle({0.2, 0.1}, 0.4)});
 }
 
 /// Returns a rectangular part of 3.1 mm x 2.3 mm with margins of 0.1 mm.
@@ -128,7 +89,7 @@ TEST(OutlinePart, SolidsAreClosed) {
 }
 
 TEST(OutlinePart, ElementsAreCutOrOmitted) {
-  PartSpec cut = with_outline(hexagons(0.3), ring(), 0.1);
+  PartSpec cut = with_outline(hexagons(0.3), ring_outline(), 0.1);
   PartSpec omit = cut;
   omit.array.partial_elements = PartialElements::omit;
   const Part cut_part = build_part(cut);
@@ -181,10 +142,10 @@ TEST(OutlinePart, RaysStartInside) {
 }
 
 TEST(OutlinePart, AgreesWithTheReferenceTracer) {
-  const std::vector<TraceCase> cases = {{"oblique", with_outline(prisms(), oblique()), 12.0, 40.0},
-                                        {"bent", with_outline(hexagons(), bent()), 20.0, 110.0},
-                                        {"bent with margin", with_outline(prisms(), bent(), 0.08), 35.0, 250.0},
-                                        {"ring", with_outline(hexagons(), ring()), 28.0, 15.0}};
+  const std::vector<TraceCase> cases = {{"oblique", with_outline(prisms(), oblique_outline()), 12.0, 40.0},
+                                        {"bent", with_outline(hexagons(), bent_outline()), 20.0, 110.0},
+                                        {"bent with margin", with_outline(prisms(), bent_outline(), 0.08), 35.0, 250.0},
+                                        {"ring", with_outline(hexagons(), ring_outline()), 28.0, 15.0}};
   for (const TraceCase& c : cases) {
     const Part part = build_part(c.spec);
     const Illumination light = from(c.incidence_deg, c.azimuth_deg);
@@ -197,24 +158,42 @@ TEST(OutlinePart, AgreesWithTheReferenceTracer) {
 
 TEST(OutlinePart, EnginesAgree) {
   const Outline sharp = oriented({polygon_of_corners({{0, 0}, {1.5, 0}, {2.0, 1.2}, {0.5, 1.2}})});
-  const Outline angle =
-      oriented({polygon_of_corners({{0, 0}, {1.6, 0}, {1.6, 0.8}, {0.8, 0.8}, {0.8, 1.5}, {0, 1.5}})});
-  const Outline hole = oriented({polygon_of_corners({{0, 0}, {1.6, 0}, {1.6, 1.4}, {0, 1.4}}),
-                                 polygon_of_corners({{0.6, 0.5}, {1.0, 0.6}, {0.8, 0.9}})});
   const std::vector<NamedPart> parts = {{"parallelogram", with_outline(prisms(), sharp, 0.05)},
-                                        {"angle", with_outline(hexagons(), angle)},
-                                        {"hole", with_outline(prisms(), hole)}};
+                                        {"angle", with_outline(hexagons(), angle_outline())},
+                                        {"hole", with_outline(prisms(), holed_outline())}};
   for (const auto& [name, spec] : parts) expect_same_accounts(build_part(spec), from(11.0, 65.0), 1e-4, 2e-3, name);
+}
+
+/// Masks and tables of facets use the same whole elements as an array without partial elements.
+TEST(OutlinePart, ElementsWithOwnPlanesAreThoseOfTheArray) {
+  for (const Outline& outline : {oblique_outline(), bent_outline(), ring_outline()}) {
+    PartSpec spec = with_outline(prisms(0.3), outline, 0.05);
+    spec.array.arrangement = Arrangement::aligned;
+    spec.array.partial_elements = PartialElements::omit;
+    const auto& prism = std::get<RtpElement>(spec.element);
+    std::vector<ElementPlanes> planes;
+    for (const WholeElement& at : whole_elements(spec.array, spec.element)) {
+      ElementPlanes& own = planes.emplace_back();
+      own.centre_mm = 0.5 * Vec2(spec.array.x_length_mm, spec.array.y_length_mm) + at.centre_mm;
+      own.planes = {{-0.5 * prism.base_mm, {-1.0, 0.0}}, {-0.5 * prism.base_mm, {1.0, 0.0}}};
+    }
+    const Part plain = build_part(spec);
+    const Part own = build_part(spec, FacetPlanes(planes, prism.width_mm));
+    EXPECT_EQ(own.elements_full, plain.elements_full);
+    EXPECT_NEAR(own.retro_facet_area_mm2, plain.retro_facet_area_mm2, 1e-9);
+    const Ledger a = MonteCarlo(plain).trace(pmma(), from(7.0, 20.0), {0.5}, rays(1U << 12), {}).cones[0].ledger;
+    const Ledger b = MonteCarlo(own).trace(pmma(), from(7.0, 20.0), {0.5}, rays(1U << 12), {}).cones[0].ledger;
+    for (std::size_t k = 0; k < kAccountCount; ++k) EXPECT_NEAR(a.power[k], b.power[k], 1e-9);
+  }
 }
 
 /// No ray leaks through an edge of the border, and the ledger is closed (10^8 segments in a long run).
 TEST(OutlinePart, RandomOutlinesLoseNoRay) {
   std::mt19937 random(1);
-  const int outlines = test::sample_size(40, 200);
-  const std::uint64_t segments =
-      test::sample_size<std::uint64_t>(1'000'000, 100'000'000) / static_cast<std::uint64_t>(outlines);
+  constexpr int kOutlines = 200;
+  const std::uint64_t segments = test::sample_size<std::uint64_t>(4'000'000, 100'000'000) / kOutlines;
   std::uint64_t misses = 0;
-  for (int k = 0; k < outlines; ++k) {
+  for (int k = 0; k < kOutlines; ++k) {
     const Part part =
         build_part(with_random_outline(k % 2 == 0 ? prisms() : hexagons(), random, 1.5, k % 3 == 0 ? 0.04 : 0.0));
     const MonteCarlo tracer(part);

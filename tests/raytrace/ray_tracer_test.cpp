@@ -13,6 +13,7 @@
 #include "core/threads.h"
 #include "raytrace/light/light_setup.h"
 #include "tests/support/designs.h"
+#include "tests/support/outlined_parts.h"
 #include "tests/support/reference_tracer.h"
 
 namespace retrace::testing::ray_tracer_test {
@@ -92,7 +93,10 @@ std::vector<NamedPart> parts() {
           {"cube corner", single(HexagonalCube{1.0}, 0.3)},
           {"checker", finite(prism, Arrangement::checker, 1.6, 1.1, 0.4)},
           {"margins", margins},
-          {"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.3, 1.9, 0.4)}};
+          {"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.3, 1.9, 0.4)},
+          {"parallelogram", with_outline(finite(prism, Arrangement::offset, 0.0, 0.0, 0.4), oblique_outline())},
+          {"notch", with_outline(finite(prism, Arrangement::offset, 0.0, 0.0, 0.4), angle_outline(), 0.05)},
+          {"hole", with_outline(finite(HexagonalCube{0.5}, Arrangement::honeycomb, 0.0, 0.0, 0.4), holed_outline())}};
 }
 
 /// Fixture with rays towards points of a box around a part. The ray tracer and the reference engine trace these rays.
@@ -105,6 +109,17 @@ class RayByRay : public ::testing::TestWithParam<std::size_t> {
     const IncidentRay ray{origin, direction, light, 0};
     expect_same(tracer.trace({&ray, 1}, 0, nullptr),
                 reference_ray(part, optics, origin, direction, light, inside, kCone), named.name + ", " + what);
+  }
+
+  /// Returns a random point in the plate that is not in a notch or a hole.
+  Vec3 point_in_plate() {
+    while (true) {
+      const Vec3 p = random.within(box, 0.02, part.thickness_mm - 0.02);
+      if (part.entrance_pieces.empty() ||
+          std::ranges::any_of(part.entrance_pieces,
+                              [&](const Polygon& piece) { return contains(piece, p.head<2>(), -1e-6); }))
+        return p;
+    }
   }
 
   NamedPart named = parts()[GetParam()];
@@ -128,8 +143,7 @@ TEST_P(RayByRay, FromInsideIsThatOfTheReference) {
   Optics dark = pmma();
   dark.absorption_per_mm = 1.0;
   for (int k = 0; k < 20; ++k)
-    compare(random.within(box, 0.02, part.thickness_mm - 0.02), random.direction(), true, dark,
-            "ray " + std::to_string(k));
+    compare(point_in_plate(), random.direction(), true, dark, "ray " + std::to_string(k));
 }
 
 TEST_P(RayByRay, WithAnotherMediumBehindIsThatOfTheReference) {
@@ -229,6 +243,23 @@ TEST(RayTracer, ManyRaysAreABeamOnASoiledFace) {
   const TracedRays traced = tracer.trace(beam(bounding_box(part.outline), part.thickness_mm, light, 40000), 0, nullptr);
   const MonteCarloResult known = MonteCarlo(part).trace(soiled, light, {0.5}, rays(65536), {});
   expect_same_accounts(traced.ledger, known.cones[0].ledger);
+}
+
+TEST(RayTracer, ManyRaysAreABeamOnAPartWithNotches) {
+  for (const Outline& outline : {bent_outline(), ring_outline()}) {
+    const Part part =
+        build_part(with_outline(finite(HexagonalCube{0.5}, Arrangement::honeycomb, 0.0, 0.0, 0.5), outline));
+    // The light is parallel to the walls, so that it enters only through the entrance face.
+    const Illumination light = from(0.0);
+    RayTracer tracer(part, nullptr, 0.5, one_branch(), 3);
+    tracer.add(pmma());
+    const Rectangle box = bounding_box(part.outline);
+    const TracedRays traced = tracer.trace(beam(box, part.thickness_mm, light, 40000), 0, nullptr);
+    const double missed = 1.0 - part.entrance_area_mm2 / box.size().prod();
+    EXPECT_NEAR(traced.ledger.missed / traced.ledger.incident, missed, 0.012);
+    const MonteCarloResult known = MonteCarlo(part).trace(pmma(), light, {0.5}, rays(65536), {});
+    expect_same_accounts(traced.ledger, known.cones[0].ledger);
+  }
 }
 
 TEST(RayTracer, WhatLeavesAddsUpToTheLedger) {

@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "geometry/part/chosen_elements.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
+#include "tests/support/outlined_parts.h"
 
 namespace retrace::testing::wet_back_test {
 namespace {
@@ -268,6 +270,33 @@ TEST(WetBack, LedgersAddUpToOne) {
       EXPECT_EQ(result.misses, 0U);
       for (const double power : result.cones[0].ledger.power) EXPECT_GE(power, 0.0);
     }
+  }
+}
+
+/// The sides of notches and holes below z = 0 have the medium behind the element next to them.
+TEST(WetBack, NotchesAndHolesAreWetTogetherWithTheirElements) {
+  for (const Outline& outline : {bent_outline(), ring_outline()}) {
+    const Part part =
+        build_part(with_outline(finite(HexagonalCube{0.5}, Arrangement::honeycomb, 0.0, 0.0, 0.4), outline));
+    const ChosenElements all(part, RandomFraction{1.0, 9});
+    EXPECT_TRUE(all.contains_all());
+    EXPECT_EQ(all.count(), part.elements_full + part.elements_partial);
+    EXPECT_TRUE(ChosenElements(part, RandomFraction{0.0, 9}).is_empty());
+    Optics behind = pmma();
+    behind.back_index = kWater;
+    const Optics wet = wet_behind(pmma(), part, RandomFraction{1.0, 9}, kWater);
+    const Illumination light = from(20.0, 50.0);
+    const Ledger a = traced(part, behind, light).ledger;
+    const Ledger b = traced(part, wet, light).ledger;
+    for (std::size_t k = 0; k < kAccountCount; ++k) EXPECT_NEAR(a.power[k], b.power[k], 1e-12);
+    // Beams and rays use the choice in different manners.
+    const Optics half = wet_behind(pmma(), part, geometry::HalfPlane{{1.1, 0.0}, 0.0}, kWater);
+    BeamPolicy policy;
+    policy.cutoff = 1e-4;
+    const Ledger beams = BeamTracer(part).trace(half, light, {0.5}, policy).ledgers[0];
+    const Ledger rays = traced(part, half, light, 1U << 16).ledger;
+    for (std::size_t k = 0; k < kAccountCount; ++k)
+      EXPECT_NEAR(beams.power[k], rays.power[k], beams[Account::truncated] + 2e-3) << kAccountNames[k];
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "design/io/design_document.h"
 #include "design/io/design_reader.h"
+#include "design/part_of_design.h"
 #include "geometry/outline/plan_region.h"
 #include "geometry/part/part.h"
 #include "tests/support/refusals.h"
@@ -86,8 +87,65 @@ TEST(OutlineReader, FaultsAreReportedAtTheirKey) {
   EXPECT_EQ(complaint(design(kSquare, "x_offset_mm = 1")), "d.toml:6: array.x_offset_mm");
   EXPECT_EQ(complaint(design(kSquare, "extent = \"infinite\"")), "d.toml:7: outline");
   EXPECT_EQ(complaint(design(kSquare, "arrangement = \"single\"")), "d.toml:7: outline");
-  EXPECT_EQ(complaint(design(kSquare + "holes_mm = [[5, 5, 1]]", "", "[wet_back]\nindex = 1.33\nfraction = 0.5")),
+  EXPECT_EQ(complaint(design(kSquare + "holes_mm = [[5, 5, 1]]", "", "[entrance_surface]\nmesh = \"face.stl\"")),
             "d.toml:9: outline.holes_mm");
+}
+
+/// A document contains the keys of the outline as they were given, so that polygons with many rounded corners can be
+/// read again.
+TEST(OutlineReader, DocumentsContainTheKeysAsGiven) {
+  std::string corners;
+  constexpr int kCorners = 800;
+  for (int k = 0; k < kCorners; ++k) {
+    const double radius = k % 2 == 0 ? 100.0 : 99.0;
+    const double at = 2.0 * kPi * k / kCorners;
+    corners += "[" + std::to_string(radius * std::cos(at)) + ", " + std::to_string(radius * std::sin(at)) + "], ";
+  }
+  const design::Design star =
+      read(design("polygon_mm = [" + corners + "]\ncorner_radius_mm = 0.1\ntolerance_mm = 0.5"));
+  ASSERT_EQ(star.part().array.outline->outline.loops[0].size(), 2U * kCorners);
+  const std::string text = design::design_text(star);
+  EXPECT_NE(text.find("corner_radius_mm = 0.1\n"), std::string::npos);
+  const design::Design again = read(text);
+  EXPECT_EQ(again.part().array.outline->area_mm2(), star.part().array.outline->area_mm2());
+  EXPECT_EQ(design::design_text(again), text);
+  const design::Design arcs = read(design(kSquare + "side_sagitta_mm = [1, 0, -1, 0]\nholes_mm = [[5, 5, 1]]"));
+  EXPECT_NE(design::design_text(arcs).find("side_sagitta_mm = [1.0, 0.0, -1.0, 0.0]"), std::string::npos)
+      << design::design_text(arcs);
+}
+
+std::string zones_of(const std::string& zones, const std::string& outline = kSquare) {
+  return design(outline, "", zones);
+}
+
+TEST(OutlineReader, StripesHaveTheirFractionsOfTheArea) {
+  const std::string outline =
+      "polygon_mm = [[0, 0], [20, 0], [10, 16]]\ncorner_radius_mm = 1\nholes_mm = [[10, 5, 2]]\n";
+  const design::Design design =
+      read(zones_of("[[zone]]\narea_fraction = 0.25\n[[zone]]\narea_fraction = 0.6\n"
+                    "set = [\"element.base_mm=0.4\"]\n[[zone]]\narea_fraction = 0.15\n",
+                    outline));
+  const geometry::Part part = design::part_of_design(design, nullptr);
+  const double all = part.entrance_area_mm2;
+  EXPECT_NEAR(part.zones[0].area_mm2 / all, 0.25, 1e-9);
+  EXPECT_NEAR(part.zones[1].area_mm2 / all, 0.6, 1e-9);
+  EXPECT_NEAR(part.zones[2].area_mm2 / all, 0.15, 1e-9);
+  // A triangle with the area A and half the perimeter s loses r^2 (s^2 / A - pi) at its rounded corners.
+  const double half_perimeter = 10 + std::sqrt(356.0);
+  EXPECT_NEAR(all, 160 - 4 * kPi - (half_perimeter * half_perimeter / 160 - kPi), 1e-8);
+  const geometry::Part again = design::part_of_design(read(design::design_text(design)), nullptr);
+  EXPECT_EQ(again.elements_full, part.elements_full);
+  EXPECT_NEAR(again.zones[1].area_mm2, part.zones[1].area_mm2, 1e-9);
+}
+
+TEST(OutlineReader, ZonesMustBeInsideTheOutline) {
+  const std::string notch = "polygon_mm = [[0, 0], [10, 0], [10, 5], [5, 5], [5, 10], [0, 10]]\n";
+  const auto zone = [](const std::string& box) { return "[[zone]]\nrectangles_mm = [" + box + "]\n"; };
+  EXPECT_EQ(complaint(zones_of(zone("[0, 0, 10, 5]") + zone("[0, 5, 5, 10]"), notch)), "nothing");
+  EXPECT_EQ(complaint(zones_of(zone("[0, 0, 10, 5]") + zone("[0, 5, 10, 10]"), notch)), "nothing");
+  EXPECT_EQ(complaint(zones_of(zone("[0, 0, 10, 5], [0, 5, 5, 10]") + zone("[5, 5, 10, 10]"), notch)),
+            "d.toml:14: zone[2]");
+  EXPECT_EQ(complaint(zones_of(zone("[0, 0, 10, 5]") + zone("[0, 5, 4, 10]"), notch)), "d.toml:14: zone[2]");
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ void check_cells(const Study& study) {
   } catch (const InputError&) {
     return;
   }
-  design::require_supported(cell->design(), {.what = "retrace compose", .wet_backs = true, .outlines = false});
+  design::require_supported(cell->design(), {.what = "retrace compose", .wet_backs = true});
 }
 
 /// Reads the standard deviations of angle errors. Returns nothing if the study has none.

@@ -12,6 +12,7 @@
 #include "design/io/design_document.h"
 #include "design/io/design_reader.h"
 #include "design/io/zone_reader.h"
+#include "geometry/outline/plan_region.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
@@ -25,11 +26,19 @@ constexpr double kElementsOfRow = 8.0;
 /// Maximum number of rows of all zones together. It limits the number of regions in a design file.
 constexpr double kMaxRows = 120.0;
 
+/// Returns the coordinate in a rectangle below which a fraction of the part's area within the rectangle is located.
+/// \param outline outline of the part, or null for a rectangle
+double coordinate_in(const geometry::PlanRegion* outline, const Rectangle& room, Eigen::Index axis, double fraction) {
+  if (outline == nullptr) return room.lower[axis] + fraction * room.size()[axis];
+  return geometry::coordinate_of_area_fraction(*outline, room, axis, fraction);
+}
+
 /// Divides a rectangle into blocks for the zones from `first` to `end`. The zones are split into two groups of about
 /// the same area. The rectangle is split across its longer side, and both halves are divided in the same manner.
 /// \param shares fractions of the area of all zones
+/// \param outline outline of the part, or null for a rectangle
 void add_blocks(const std::vector<double>& shares, std::size_t first, std::size_t end, const Rectangle& room,
-                std::vector<std::vector<Rectangle>>& regions) {
+                const geometry::PlanRegion* outline, std::vector<std::vector<Rectangle>>& regions) {
   if (end - first == 1) {
     regions[first] = {room};
     return;
@@ -42,31 +51,38 @@ void add_blocks(const std::vector<double>& shares, std::size_t first, std::size_
   const Eigen::Index axis = room.size().x() >= room.size().y() ? 0 : 1;
   Rectangle lower = room;
   Rectangle upper = room;
-  lower.upper[axis] = upper.lower[axis] = room.lower[axis] + before / all * room.size()[axis];
-  add_blocks(shares, first, middle, lower, regions);
-  add_blocks(shares, middle, end, upper, regions);
+  lower.upper[axis] = upper.lower[axis] = coordinate_in(outline, room, axis, before / all);
+  add_blocks(shares, first, middle, lower, outline, regions);
+  add_blocks(shares, middle, end, upper, outline, regions);
 }
 
-std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares, const Vec2& size_mm) {
+std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares, const Vec2& size_mm,
+                                              const geometry::PlanRegion* outline) {
   std::vector<std::vector<Rectangle>> regions(shares.size());
-  add_blocks(shares, 0, shares.size(), {Vec2::Zero(), size_mm}, regions);
+  add_blocks(shares, 0, shares.size(), {Vec2::Zero(), size_mm}, outline, regions);
   return regions;
 }
 
 /// Divides the part into rows and assigns them to the zones in turn.
 /// \param element_mm maximum extent of an element along y
-std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
+/// \param outline outline of the part, or null for a rectangle
+std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm,
+                                            const geometry::PlanRegion* outline) {
   const double least = *std::ranges::min_element(shares);
   const double most = std::floor(kMaxRows / static_cast<double>(shares.size()));
   const double bands = std::clamp(std::floor(least * size_mm.y() / (kElementsOfRow * element_mm)), 1.0, most);
   std::vector<std::vector<Rectangle>> regions(shares.size());
+  const auto y_of = [&](double fraction) {
+    if (fraction >= 1.0) return size_mm.y();
+    return fraction > 0.0 ? coordinate_in(outline, {Vec2::Zero(), size_mm}, 1, fraction) : 0.0;
+  };
   double from = 0.0;
   for (double band = 0.0; band < bands; band += 1.0) {
     double share = 0.0;
     for (std::size_t k = 0; k < shares.size(); ++k) {
       share += shares[k];
       const double to = k + 1 == shares.size() ? (band + 1.0) / bands : (band + share) / bands;
-      regions[k].push_back({{0.0, from * size_mm.y()}, {size_mm.x(), to * size_mm.y()}});
+      regions[k].push_back({{0.0, y_of(from)}, {size_mm.x(), y_of(to)}});
       from = to;
     }
   }
@@ -160,6 +176,8 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {
   const design::Design whole = whole_design(study, zones.front().cell.values, request);
   const Vec2 size_mm(whole.part().array.x_length_mm, whole.part().array.y_length_mm);
+  const geometry::PlanRegion* outline = whole.part().array.outline.get();
+  if (outline != nullptr && outline->is_box()) outline = nullptr;
   std::vector<double> shares;
   double element_mm = 0.0;
   for (const Zone& zone : zones) {
@@ -167,8 +185,8 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
     element_mm = std::max(element_mm, height_of(study, zone));
   }
   std::vector<std::vector<Rectangle>> regions;
-  if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm);
-  if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm);
+  if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm, outline);
+  if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm, outline);
   std::string text =
       design::design_text(whole, fmt::format("# The {} zones of {} in {}.\n", zones.size(),
                                              printable(std::filesystem::path(study.source).filename().string()),

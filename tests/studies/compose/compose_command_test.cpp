@@ -65,6 +65,31 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   }
 }
 
+// The zones of a part with an outline have their fractions of the area inside the outline.
+TEST(ComposeCommand, ZonesAreDividedInsideTheOutline) {
+  const TemporaryFolder folder;
+  folder.write("design.toml",
+               "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[outline]\n"
+               "polygon_mm = [[0, 0], [16, 0], [20, 12], [3, 12]]\ncorner_radius_mm = 2\nmargin_mm = 0.4\n"
+               "[body]\nthickness_mm = 2\n");
+  std::string text = study("max_zones = 2\nrounds = 0\n", "1e-1");
+  text.replace(text.find(example("honeycomb_infinite.toml")), example("honeycomb_infinite.toml").size(), "design.toml");
+  folder.write("study.toml", text);
+  for (const std::string layout : {"stripes", "blocks", "rows"}) {
+    const Outcome outcome = retrace(
+        folder, {"compose", "study.toml", "-o", layout, "--design", "part.toml", "--layout", layout, "--quiet"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Json zones = folder.json(layout + "/composition.json").at("zones");
+    ASSERT_EQ(zones.size(), 2U);
+    const Json inspected = retrace_json(folder, {"inspect", "part.toml"});
+    for (std::size_t z = 0; z < 2; ++z)
+      EXPECT_NEAR(
+          inspected.at("zones").at(z).at("area_mm2").get<double>() / inspected.at("entrance_area_mm2").get<double>(),
+          zones[z].at("area_fraction").get<double>(), 1e-8)
+          << layout;
+  }
+}
+
 TEST(ComposeCommand, WritesThePartOfZones) {
   const TemporaryFolder folder;
   folder.write("study.toml", study("max_zones = 2\nrounds = 0\n"));

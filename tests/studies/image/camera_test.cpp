@@ -16,6 +16,7 @@
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"
+#include "tests/support/outlined_parts.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::camera_test {
@@ -64,12 +65,15 @@ Part cubes(double error_arcmin = 0.0) {
 TEST(Camera, PartIsInvisibleInUniformLight) {
   const Part brick = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
   const Part cube = build_part(single(HexagonalCube{3.0}, 1.0));
-  for (const Part* part : {&brick, &cube})
+  const PartSpec small = finite(HexagonalCube{0.5}, Arrangement::honeycomb, 0.0, 0.0, 0.5);
+  const Part notch = build_part(with_outline(small, bent_outline()));
+  const Part hole = build_part(with_outline(small, ring_outline()));
+  for (const Part* part : {&brick, &cube, &notch, &hole})
     for (const double h_deg : {0.0, 30.0, 70.0}) {
       CameraScene scene = far_scene(*part, 0.0, 10.0, h_deg, 10.0, 10.0);
       scene.lamp.illuminance_lx = 0.0;
       scene.surroundings = {7.0, 7.0};
-      scene.view.width_mm = 9.0;
+      scene.view.width_mm = part->entrance_pieces.empty() ? 9.0 : 3.0;
       Optics layered = pmma();
       layered.facet_layers = {{{1.9, 0.1}, {1.3777, 0.2}}};
       layered.entrance_layers = anti_reflection();

@@ -350,15 +350,36 @@ TEST(Road, IntensityOfASignInThePictureIsThatOfItsArea) {
 TEST(Road, FiniteDesignsHaveTheirOwnOutline) {
   const Polygon hexagon = {{40, 10}, {50, 20}, {50, 40}, {40, 50}, {30, 40}, {30, 20}};
   RoadRequest request;
-  const RoadScene own = scene_of(request, hexagon);
+  const RoadScene own = scene_of(request, {hexagon});
   EXPECT_NEAR(own.area(), 1e-6 * geometry::area(hexagon), 1e-15);
   EXPECT_NEAR(own.size().x(), 0.02, 1e-15);
   EXPECT_NEAR(own.size().y(), 0.04, 1e-15);
   EXPECT_NEAR((geometry::bounding_box(own.outline).centre()).norm(), 0.0, 1e-15);
   request.reflector_mm = {60.0, 20.0};
-  EXPECT_NEAR(scene_of(request, hexagon).area(), 1e-6 * geometry::area(hexagon) * 3.0 * 0.5, 1e-15);
+  EXPECT_NEAR(scene_of(request, {hexagon}).area(), 1e-6 * geometry::area(hexagon) * 3.0 * 0.5, 1e-15);
   request.outline = "rectangle";
-  EXPECT_NEAR(scene_of(request, hexagon).area(), 0.06 * 0.02, 1e-15);
+  EXPECT_NEAR(scene_of(request, {hexagon}).area(), 0.06 * 0.02, 1e-15);
+}
+
+/// A reflector with a notch has the area of its parts. A sign needs a convex outline.
+TEST(Road, NotchesReturnNoLight) {
+  const std::vector<Polygon> angle = {{{0, 0}, {60, 0}, {60, 20}, {0, 20}}, {{0, 20}, {20, 20}, {20, 40}, {0, 40}}};
+  RoadRequest request;
+  const RoadScene scene = scene_of(request, angle);
+  EXPECT_NEAR(scene.area(), 1600e-6, 1e-15);
+  EXPECT_NEAR(geometry::area(scene.outline), 2000e-6, 1e-15);
+  RoadView view;
+  view.distance_m = 20.0;
+  view.reflectors.resize(2);
+  view.reflectors[0].luminance = 1.0;
+  draw_road(scene, view);
+  const Vec3 way = scene.reflectors[0] - view.camera.eye;
+  double intensity_cd = 0.0;
+  for (std::size_t k = 0; k < view.picture.reflected.size(); ++k)
+    intensity_cd += view.picture.reflected[k] * view.camera.solid_angle(k) * way.squaredNorm();
+  EXPECT_NEAR(intensity_cd / (scene.area() * std::abs(way.z()) / way.norm()), 1.0, 3e-3);
+  request.mount = "sign";
+  EXPECT_EQ(refusal_of([&] { scene_of(request, angle); }), "outline");
 }
 
 TEST(Road, ImpossiblePositionsAreRefused) {
