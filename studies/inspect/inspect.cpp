@@ -242,7 +242,7 @@ WetReport report_wet_back(const design::Design& design, const design::OpticalMod
 
 Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library) {
   if (design.balls()) return inspect_balls(design, library);
-  const design::OpticalModel model = design::make_model(design, library, design::Entrances::any);
+  const design::OpticalModel model = design::make_model(design, library);
   const geometry::Part& part = model.part;
   Inspection result = report_light(design, model);
   result.elements_full = part.elements_full;
