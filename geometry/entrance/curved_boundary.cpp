@@ -60,8 +60,8 @@ class ChordError {
     const Vec3 hub = on_surface(centroid(polygon));
     double error_mm = 0.0;
     for (std::size_t k = 0; k < polygon.size() && error_mm <= enough_mm; ++k)
-      error_mm = std::max(error_mm, of_triangle(hub, on_surface(polygon[k]),
-                                                on_surface(polygon[(k + 1) % polygon.size()]), enough_mm));
+      error_mm = std::max(
+          error_mm, of_triangle(hub, on_surface(polygon[k]), on_surface(polygon[(k + 1) % polygon.size()]), enough_mm));
     return error_mm;
   }
 
@@ -160,7 +160,9 @@ class BoundaryBuilder {
   std::vector<Ring> rims_of_open_edges() const {
     const auto edges = open_edges(mesh_);
     std::map<std::pair<double, double>, std::vector<std::pair<double, std::uint32_t>>> columns;
-    const auto column_at = [&](std::uint32_t v) -> auto& { return columns[{place(v).x(), place(v).y()}]; };
+    const auto column_at = [&](std::uint32_t v) -> auto& {
+      return columns[{place(v).x(), place(v).y()}];
+    };
     for (const auto& [a, b] : edges)
       for (const std::uint32_t v : {a, b}) column_at(v).emplace_back(mesh_.vertices[v].z(), v);
     for (auto& [at, column] : columns) {
@@ -291,8 +293,8 @@ CurvedBoundary with_exact_surface(const Part& part, const EntranceSurface& surfa
   for (std::size_t t = 0; t < boundary.mesh.triangles.size(); ++t) {
     if (boundary.mesh.roles[t] != FacetRole::entrance) continue;
     const auto& [a, b, c] = boundary.mesh.triangles[t];
-    boundary.entrance_error_mm = std::max(boundary.entrance_error_mm,
-                                          chords.of_triangle(vertices[a], vertices[b], vertices[c], INFINITY));
+    boundary.entrance_error_mm =
+        std::max(boundary.entrance_error_mm, chords.of_triangle(vertices[a], vertices[b], vertices[c], INFINITY));
   }
   return boundary;
 }

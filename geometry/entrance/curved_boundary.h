@@ -20,7 +20,7 @@ struct CurvedBoundary {
 };
 
 /// Maximum number of polygons into which curved_boundary() divides an entrance face.
-inline constexpr std::size_t kMaxEntrancePolygons = 500'000;
+inline constexpr std::size_t kMaxEntrancePolygons = 200'000;
 
 /// Returns the closed boundary of a finite part: back surface, border walls, sides and entrance face. Neighbouring
 /// triangles share complete edges. An exact surface is approximated by triangles with corners on the surface. Square

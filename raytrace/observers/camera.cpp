@@ -78,9 +78,8 @@ class SensorAccumulator : public ExitObserver, public CellObserver {
     CameraSample& path = paths_[owner];
     const Vec3& from = scene_.film ? path.contact.world : position;
     const Vec3 towards = path.contact.world_from_local * direction;
-    const double lamp = path.is_corrected
-                            ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
-                            : luminaire_.luminance(from, towards);
+    const double lamp = path.is_corrected ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
+                                          : luminaire_.luminance(from, towards);
     path.luminance += power * (scene_.surroundings.entrance_side + lamp);
   }
   /// Adds the luminance in the direction in which the entrance face reflects the path from outside.

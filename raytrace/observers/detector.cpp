@@ -117,7 +117,8 @@ class Recorder : public ExitObserver {
     return setting_.face.pixel_at(position_mm);
   }
 
-  /// Returns the pixel of the point at which the light meets the curved entrance face, or nothing if it misses the face.
+  /// Returns the pixel of the point at which the light meets the curved entrance face, or nothing if it misses the
+  /// face.
   std::optional<std::size_t> pixel_of_curved_face(const Vec2& position_mm) const {
     const Vec3 start(position_mm.x(), position_mm.y(), light_.entrance_face->highest_mm());
     const Vec3 direction = -light_.to_source;

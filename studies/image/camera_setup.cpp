@@ -134,8 +134,7 @@ Vec3 to_lamp(const raytrace::CameraScene& scene) {
 
 void check_position(const design::OpticalModel& model, const raytrace::CameraScene& scene, const Vec3& position,
                     Field field, const char* what) {
-  const bool bad =
-      scene.film ? is_behind(*scene.film, model.part.thickness_mm, position) : is_inside(model, position);
+  const bool bad = scene.film ? is_behind(*scene.film, model.part.thickness_mm, position) : is_inside(model, position);
   if (bad)
     throw InputError(field,
                      fmt::format("the {} must be outside the {}, got {} mm", what,

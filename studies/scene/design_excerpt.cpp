@@ -75,7 +75,8 @@ FewElements few_elements(const design::Design& design, double elements) {
   return few;
 }
 
-/// Returns the edges between triangles that are not in one plane.
+/// Returns the edges between triangles that are not in one plane. Edges within the entrance face are omitted, because a
+/// curved face is smooth.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;
@@ -90,6 +91,8 @@ std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMe
       const std::uint32_t a = mesh.triangles[t][k];
       const std::uint32_t b = mesh.triangles[t][(k + 1) % 3];
       const auto [it, is_new] = first.try_emplace(std::minmax(a, b), t);
+      if (!is_new && mesh.roles[t] == geometry::FacetRole::entrance && mesh.roles[it->second] == mesh.roles[t])
+        continue;
       if (!is_new && normal(t).dot(normal(it->second)) < 1.0 - 1e-6) edges.push_back({a, b});
     }
   return edges;

@@ -78,8 +78,9 @@ void check_entrance(const design::Design& design, SolidKind what, const SolidReq
   }
   if (what == SolidKind::element)
     throw InputError(design.where(design.entrance_key()),
-                     reference({"what"}) + " element is not available with an [entrance_surface], which covers the "
-                                           "whole part: export the array");
+                     reference({"what"}) +
+                         " element is not available with an [entrance_surface], which covers the "
+                         "whole part: export the array");
 }
 
 void add_warnings(Solid& solid) {

@@ -106,7 +106,8 @@ std::string solid_table(const Solid& solid) {
   text += fmt::format("  surface    {} mm2\n", fixed(solid.area_mm2, 6));
   text += fmt::format("  triangles  {}\n", solid.mesh.triangles.size());
   if (solid.surface_error_mm)
-    text += fmt::format("  entrance   triangles within {} mm of the exact surface\n", fixed(*solid.surface_error_mm, 6));
+    text +=
+        fmt::format("  entrance   triangles within {} mm of the exact surface\n", fixed(*solid.surface_error_mm, 6));
   return text;
 }
 
