@@ -210,8 +210,9 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
   EXPECT_NEAR(json["entrance_surface"]["steepest_deg"].get<double>(), steepest, 1e-6);
   EXPECT_EQ(json["design"]["part"]["plate_mm"], Json::array({1.0, 0.8}));
   EXPECT_NE(folder_.read("out/entrance_surface.svg").find("<svg"), std::string::npos);
-  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg",
-                                                       "out/inspect.json", "out/plan.svg", "out/view.png"}));
+  EXPECT_EQ(folder_.names(),
+            (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg", "out/inspect.json",
+                                      "out/plan.svg", "out/section.svg", "out/view.png"}));
   EXPECT_NE(folder_.read("out/plan.svg").find(">x length 1</text>"), std::string::npos);
 }
 
