@@ -176,7 +176,8 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
     PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
     std::optional<CameraLight::Returned> returned = light.without_diffraction();
     if (model_.entrance) {
-      tracers->no_diffraction = raytrace::Obstacle::curved_entrance;
+      tracers->no_diffraction = request_.diffraction ? NoDiffraction(raytrace::Obstacle::curved_entrance)
+                                                     : NoDiffraction(Undiffracted::not_requested);
     } else if (!light.has_diffraction()) {
       tracers->no_diffraction = light.photometer().why_undiffracted();
     } else if (is_by_kernel && !tracers->no_diffraction) {
