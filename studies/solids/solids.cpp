@@ -126,6 +126,8 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
         geometry::curved_boundary(part, entrance, request.surface_error_mm.value_or(kSurfaceErrorMm));
     solid.mesh = std::move(boundary.mesh);
     solid.surface_error_mm = boundary.entrance_error_mm;
+    if (!geometry::open_edges(solid.mesh).empty())
+      throw InputError("cannot be joined to the sides of the mesh of the part without gaps");
   } catch (const InputError& error) {
     throw InputError(solid.design.where(solid.design.entrance_key()), error.what());
   }

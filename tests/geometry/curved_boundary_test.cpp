@@ -14,6 +14,7 @@
 #include "geometry/check/boundary_check.h"
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/part/faceted_solid.h"
+#include "geometry/part/mesh_part.h"
 #include "geometry/part/plate.h"
 #include "geometry/part/welded_part.h"
 #include "tests/geometry/part_checks.h"
@@ -40,6 +41,8 @@ std::vector<NamedBoundary> parts() {
   all.push_back({"triangles", build_welded_part(canted)});
   all.push_back({"hexagon", build_part(single(HexagonalCube{2.0}, 1.4))});
   all.push_back({"plate", build_plate({3.0, 2.0}, 1.4)});
+  const BoundaryMesh bricks = closed_boundary(all.front().part);
+  all.push_back({"mesh of bricks", part_of_mesh({bricks.vertices, bricks.triangles})});
   return all;
 }
 
