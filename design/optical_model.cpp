@@ -313,11 +313,8 @@ std::size_t OpticalModel::nearest_wavelength() const {
   return static_cast<std::size_t>(nearest - spectral.begin());
 }
 
-OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
+OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
   require_supported(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
-  if (entrances == Entrances::plane && design.entrance)
-    throw InputError(design.where(design.entrance_key()),
-                     "an [entrance_surface] is supported only by retrace rre, photometry, inspect and rays");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);

@@ -39,17 +39,14 @@ struct OpticalModel {
   /// Returns the index in `spectral` of the wavelength that is nearest to `wavelength_nm`.
   /// \pre `spectral` is not empty
   std::size_t nearest_wavelength() const;
+  /// Returns the curved entrance face as tracers take it: null if the face is plane.
+  const geometry::Entrance* curved_entrance() const { return entrance ? &*entrance : nullptr; }
 };
-
-/// Entrance faces that a caller supports: only plane faces, or also curved faces.
-enum class Entrances { plane, any };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.
 /// \throw InputError that names file and line. It is thrown for an unknown material, an invalid spectrum, and a
-///        wavelength without an index. It is also thrown for balls, which have no geometry::Part, and for a curved
-///        entrance face unless `entrances` is any.
-OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
-                        Entrances entrances = Entrances::plane);
+///        wavelength without an index. It is also thrown for balls, which have no geometry::Part.
+OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library);
 
 /// Returns a model without a part, for tracers of balls.
 /// \throw InputError under the same conditions as make_model()

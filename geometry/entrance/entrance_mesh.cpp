@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -74,10 +75,10 @@ std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
   return triangles;
 }
 
-/// Returns the maximum distance by which rounding to single precision may have moved a corner.
-double rounding_mm(const TriangleMesh& mesh) {
+/// Returns the maximum distance by which rounding to single precision may have moved a vertex.
+double rounding_mm(const std::vector<Vec3>& vertices) {
   double largest_mm = 0.0;
-  for (const Vec3& p : mesh.vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
+  for (const Vec3& p : vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
   return kSingleRounding * largest_mm;
 }
 
@@ -116,6 +117,18 @@ void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
   }
 }
 
+/// Moves a point to a side of a convex outline if it is nearer to this side than the tolerance.
+Vec3 settled(Vec3 p, const Polygon& outline, double tolerance_mm) {
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2& a = outline[k];
+    const Vec2 along = (outline[(k + 1) % outline.size()] - a).normalized();
+    const Vec2 inward(-along.y(), along.x());
+    const double depth_mm = inward.dot(p.head<2>() - a);
+    if (std::abs(depth_mm) <= tolerance_mm) p.head<2>() -= depth_mm * inward;
+  }
+  return p;
+}
+
 }  // namespace
 
 bool MeshCover::is_exact() const {
@@ -135,7 +148,7 @@ MeshCover cover_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& mov
     cover.triangles.push_back(t);
   }
   cover.fraction = covered_mm2 / area(outline);
-  cover.gap = find_gap(vertices, cover.triangles, all, outline, rounding_mm(mesh));
+  cover.gap = find_gap(vertices, cover.triangles, all, outline, rounding_mm(mesh.vertices));
   if (cover.gap) cover.gap->at_mm -= move_mm.head<2>();
   return cover;
 }
@@ -186,6 +199,32 @@ EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& o
     }
   }
   return range;
+}
+
+double entrance_height(const Entrance& entrance, const Vec2& point_mm) {
+  if (const auto* const surface = std::get_if<std::shared_ptr<const EntranceSurface>>(&entrance))
+    return (*surface)->at(point_mm).height_mm;
+  const SurfacePatch& patch = *std::get<1>(entrance);
+  for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
+    const auto& [a, b, c] = patch.triangles[k];
+    const auto place = [&](std::uint32_t v) { return Vec2(patch.vertices[v].head<2>()); };
+    if (!contains(Polygon{place(a), place(b), place(c)}, point_mm)) continue;
+    const PatchFacet& facet = patch.facets[k];
+    return (facet.offset_mm - facet.normal.head<2>().dot(point_mm)) / facet.normal.z();
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<std::vector<Vec3>> entrance_mesh_polygons(const SurfacePatch& patch, const Polygon& outline) {
+  const double tolerance_mm = rounding_mm(patch.vertices);
+  std::vector<std::vector<Vec3>> polygons;
+  for (const Triangle& t : patch.triangles) {
+    std::vector<Vec3> polygon = over(outline, patch.vertices, t);
+    if (!(plan_area(polygon) > 0.0)) continue;
+    for (Vec3& p : polygon) p = settled(p, outline, tolerance_mm);
+    polygons.push_back(std::move(polygon));
+  }
+  return polygons;
 }
 
 }  // namespace retrace::geometry

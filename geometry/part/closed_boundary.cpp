@@ -2,9 +2,11 @@
 
 #include <map>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "geometry/centroid.h"
 #include "geometry/part/cover_polygons.h"
+#include "geometry/part/triangle_mesh.h"
 
 namespace retrace::geometry {
 namespace {
@@ -37,6 +39,8 @@ class EntranceVertices {
   std::map<std::uint32_t, std::uint32_t> raised_;
 };
 
+}  // namespace
+
 void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRole role) {
   const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
@@ -46,11 +50,21 @@ void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRo
   }
 }
 
-}  // namespace
+std::vector<std::pair<std::uint32_t, std::uint32_t>> open_edges(const BoundaryMesh& mesh) {
+  std::unordered_map<std::uint64_t, int> passed;
+  passed.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++passed[directed_edge(t[k], t[(k + 1) % 3])];
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!passed.contains(directed_edge(t[(k + 1) % 3], t[k]))) open.emplace_back(t[k], t[(k + 1) % 3]);
+  return open;
+}
 
-BoundaryMesh closed_boundary(const Part& part) {
+BoundaryMesh back_boundary(const Part& part) {
   if (part.period_mm || part.placements.size() != 1)
-    throw std::logic_error("closed_boundary: the part must be finite and one patch");
+    throw std::logic_error("back_boundary: the part must be finite and one patch");
   const SurfacePatch& patch = part.patches[part.placements.front().patch];
   const Vec2 offset = part.placements.front().offset_mm;
 
@@ -60,7 +74,12 @@ BoundaryMesh closed_boundary(const Part& part) {
   for (const Vec3& p : patch.vertices) mesh.vertices.emplace_back(p.x() + offset.x(), p.y() + offset.y(), p.z());
   for (const std::uint32_t facet : patch.triangle_facet) mesh.roles.push_back(patch.facets[facet].role);
   for (const auto& ring : patch.border_walls) add_fan(mesh, ring, FacetRole::border_wall);
+  return mesh;
+}
 
+BoundaryMesh closed_boundary(const Part& part) {
+  BoundaryMesh mesh = back_boundary(part);
+  const SurfacePatch& patch = part.patches[part.placements.front().patch];
   EntranceVertices entrance(mesh, part.thickness_mm);
   const bool is_one_fan = part.entrance_pieces.empty();
   const Vec2 middle = centroid(part.outline);

@@ -1,12 +1,10 @@
 #include "geometry/part/mould_boundary.h"
 #include "geometry/centroid.h"
 #include "geometry/part/cover_polygons.h"
-#include "geometry/part/triangle_mesh.h"
 
 #include <algorithm>
 #include <map>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 namespace retrace::geometry {
@@ -14,19 +12,6 @@ namespace {
 
 using Ring = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Returns the directed edges for which no triangle has the opposite edge, in the order of the triangles.
-std::vector<Edge> open_edges(const BoundaryMesh& mesh) {
-  std::unordered_map<std::uint64_t, int> passed;
-  passed.reserve(3 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++passed[directed_edge(t[k], t[(k + 1) % 3])];
-  std::vector<Edge> open;
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!passed.contains(directed_edge(t[(k + 1) % 3], t[k]))) open.emplace_back(t[k], t[(k + 1) % 3]);
-  return open;
-}
 
 /// Border vertices of the surface with the same x and y, sorted by height, and the vertex at the bottom of the block
 /// below them.

@@ -136,8 +136,9 @@ Json typical_paths_json(const OpenedDesign& opened, const Json& request) {
 Json stl_json(const OpenedDesign& opened) {
   const design::Design& design = opened.design();
   const geometry::BoundaryMesh mesh =
-      design.elements() ? geometry::closed_boundary(design::part_of(design::single_element_of(design)))
-                        : opened.excerpt().mesh();
+      design.elements() && !design.entrance
+          ? geometry::closed_boundary(design::part_of(design::single_element_of(design)))
+          : opened.excerpt().mesh();
   return {{"name", "element.stl"}, {"base64", base64(geometry::stl_text(mesh, design.title))}};
 }
 

@@ -13,9 +13,10 @@ struct ExitEvent {
   /// Point where the light leaves, relative to the centre of the entrance face in x and y. In an infinite part, the
   /// point may be in any period.
   const Vec3& position;
-  const Vec3& direction;         ///< unit vector in air
-  const Light& light;            ///< its power is a fraction of the power at the start of the path
-  Vec2 shift_mm = Vec2::Zero();  ///< infinite parts: vector from `position` to the real position of the path
+  const Vec3& direction;             ///< unit vector in air
+  const Light& light;                ///< its power is a fraction of the power at the start of the path
+  Vec2 shift_mm = Vec2::Zero();      ///< infinite parts: vector from `position` to the real position of the path
+  bool is_front_reflection = false;  ///< true if the entrance face has reflected the light before it entered the part
 
   bool is_through_entrance() const { return account != Account::side_exit && account != Account::transmitted; }
 };

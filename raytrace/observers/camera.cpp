@@ -13,6 +13,7 @@
 #include "core/threads.h"
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
+#include "raytrace/faces/entrance_face.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/observers/camera_rays.h"
@@ -51,6 +52,7 @@ struct CameraSample {
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
   double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight of the path in the mean of its pixel
   double gain = 1.0;                                   ///< factor of the lamp's light, see ReturnCorrection
+  bool is_corrected = false;                           ///< true if ReturnCorrection applies to the path
   bool shows_part() const { return contact.kind == Contact::Kind::face || contact.kind == Contact::Kind::side; }
 };
 
@@ -65,24 +67,28 @@ class SensorAccumulator : public ExitObserver, public CellObserver {
   /// Selects the path to which the following events of PathWalker belong.
   void begin(std::size_t path) { path_ = static_cast<std::uint32_t>(path); }
   void on_exit(const ExitEvent& departure) override {
-    if (departure.is_through_entrance())
-      on_exit(path_, departure.position, departure.direction, departure.light.power());
+    if (!departure.is_through_entrance()) return;
+    const double power = departure.light.power();
+    if (departure.is_front_reflection)
+      on_front_reflection(path_, departure.position, departure.direction, power);
+    else
+      on_exit(path_, departure.position, departure.direction, power);
   }
   void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
     CameraSample& path = paths_[owner];
     const Vec3& from = scene_.film ? path.contact.world : position;
     const Vec3 towards = path.contact.world_from_local * direction;
-    const double lamp = path.contact.kind == Contact::Kind::face
-                            ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
-                            : luminaire_.luminance(from, towards);
+    const double lamp = path.is_corrected ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
+                                          : luminaire_.luminance(from, towards);
     path.luminance += power * (scene_.surroundings.entrance_side + lamp);
   }
   /// Adds the luminance in the direction in which the entrance face reflects the path from outside.
-  void on_front_reflection(std::uint32_t owner, const Vec3& direction, double power) {
+  /// \param from position in the camera frame
+  void on_front_reflection(std::uint32_t owner, const Vec3& from, const Vec3& direction, double power) {
     CameraSample& path = paths_[owner];
     path.luminance += power * scene_.surroundings.entrance_side;
     if (scene_.has_front_reflection)
-      path.luminance += power * luminaire_.luminance(path.contact.world, path.contact.world_from_local * direction);
+      path.luminance += power * luminaire_.luminance(from, path.contact.world_from_local * direction);
   }
   void on_transmission(std::uint32_t owner, double power) override {
     paths_[owner].luminance += scene_.surroundings.back_side * power;
@@ -162,7 +168,7 @@ struct CameraTracer::Impl {
   struct Block;
 
   Impl(const geometry::Part& p, const std::vector<WeightedOptics>& light, const CameraScene& s,
-       const PathPolicy& policy, std::uint32_t number, CameraEngine engine)
+       const PathPolicy& policy, std::uint32_t number, CameraEngine engine, const geometry::Entrance* curved)
       : part(p),
         scene(s),
         seed(number),
@@ -172,20 +178,25 @@ struct CameraTracer::Impl {
         luminaire(s.lamp, s.view, s.discs),
         entrance_mm(EntranceSampler(p).bounding_box()),
         tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMaxTiles)) {
-    if (engine == CameraEngine::fastest) cells = CellArray::make(p);
+    if (curved != nullptr)
+      entrance_face = make_entrance_face(*curved, p, centre_mm);
+    else if (engine == CameraEngine::fastest)
+      cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeightedOptics& at : light) {
       // The direction of incidence has no effect, because each path starts in its own direction.
-      setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy);
+      setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy,
+                          entrance_face.get());
       sum += at.weight;
       cumulative.push_back(sum);
     }
     const PathSetup& any = setups.front();
     const double below = any.depth_mm + any.clearance_mm;
-    middle = {0.0, 0.0, 0.5 * (any.thickness_mm - below)};
+    const double top = entrance_face ? entrance_face->highest_mm() : any.thickness_mm;
+    middle = {0.0, 0.0, 0.5 * (top - below)};
     double reach2 = 0.0;
     for (const Vec2& corner : p.outline) reach2 = std::max(reach2, (corner - centre_mm).squaredNorm());
-    radius_mm = std::sqrt(reach2 + std::pow(0.5 * (any.thickness_mm + below), 2.0));
+    radius_mm = std::sqrt(reach2 + std::pow(0.5 * (top + below), 2.0));
   }
 
   Contact contact_of(const WorldRay& ray) const;
@@ -215,6 +226,7 @@ struct CameraTracer::Impl {
   std::uint32_t seed;
   Vec2 centre_mm;
   BackSurface surface;
+  std::unique_ptr<const EntranceFace> entrance_face;  ///< null if the entrance face is plane
   Lens lens;
   Luminaire luminaire;
   geometry::Rectangle entrance_mm;
@@ -315,7 +327,8 @@ Contact CameraTracer::Impl::contact_of(const WorldRay& ray) const {
   if (scene.film) return contact_with(*scene.film, part.thickness_mm, ray);
   const double nearest = (middle - ray.origin).dot(ray.direction);
   if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
-  if (const auto plate = contact_with_plate(ray)) return *plate;
+  if (!entrance_face)
+    if (const auto plate = contact_with_plate(ray)) return *plate;
   // The start is moved close to the part, because Embree's single precision is inaccurate for points metres away.
   const Vec3 at = ray.origin + std::max(0.0, nearest - 1.01 * radius_mm) * ray.direction;
   return {Contact::Kind::outside, at, at, Eigen::Matrix3d::Identity(), 0};
@@ -346,17 +359,20 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path that meets a part with notches or holes, but not its entrance face.
-  void launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
+  /// Traces the light of one path that meets, from outside, a part with a curved entrance face. Also traces light that
+  /// meets a part with notches or holes, but not its entrance face. Returns false if the light misses the part.
+  bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
+    PathWalker& walker = walkers[wavelength];
     accumulator.begin(start.owner);
-    if (walkers[wavelength].launch(start.position, start.ray, key, replicate, sample)) {
-      paths[start.owner].contact.kind = Contact::Kind::side;
-      accumulator.on_transmission(start.owner, behind() - before);
-    } else {
-      accumulator.on_transmission(start.owner, 1.0);
-    }
+    const bool is_met = walker.launch(start.position, start.ray, key, replicate, sample);
+    accumulator.on_transmission(start.owner, is_met ? behind() - before : start.ray.light.power());
+    if (!is_met) return false;
+    Contact& contact = paths[start.owner].contact;
+    if (walker.arrival() == PathWalker::Arrival::entrance) contact.kind = Contact::Kind::face;
+    if (walker.arrival() == PathWalker::Arrival::side) contact.kind = Contact::Kind::side;
+    return true;
   }
 
   /// Returns the power that has left through the sides and the back.
@@ -377,13 +393,18 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
   CameraSample& path = block.paths.emplace_back();
   path.contact = contact_of(ray);
   const Contact contact = path.contact;
-  if (contact.kind == Contact::Kind::face) path.gain = scene.correction.gain_at(contact.local.head<2>());
+  path.is_corrected = contact.kind == Contact::Kind::face || entrance_face != nullptr;
+  if (path.is_corrected) path.gain = scene.correction.gain_at(contact.local.head<2>());
   if (contact.kind == Contact::Kind::nothing) path.luminance = scene.surroundings.back_side;
   if (contact.kind == Contact::Kind::nothing || contact.kind == Contact::Kind::dark) return;
   const Optics& optics = setups[wavelength].optics;
   const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
   Ray start{direction, {}, contact.kind != Contact::Kind::outside, false};
   start.light.s_axis = direction.unitOrthogonal();
+  if (entrance_face) {
+    block.launch({contact.local, start, number}, wavelength, {seed, kCameraChoiceStream}, point, pixel);
+    return;
+  }
   if (path.shows_part()) {
     const bool is_side = contact.kind == Contact::Kind::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
@@ -398,7 +419,7 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
       if (is_side)
         block.accumulator.on_transmission(number, front.power());
       else
-        block.accumulator.on_front_reflection(number, mirrored(direction, normal), front.power());
+        block.accumulator.on_front_reflection(number, contact.world, mirrored(direction, normal), front.power());
     }
   }
   const CellRay on{contact.local, start, number};
@@ -408,10 +429,11 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
   }
   std::uint32_t choices = 0;
   const RandomKey key{seed, kCameraChoiceStream};
-  if (!part.entrance_pieces.empty() && contact.kind == Contact::Kind::outside)
-    block.launch(on, wavelength, key, point, pixel);
-  else
-    block.resume(on, wavelength, key, point, pixel, choices);
+  if (!part.entrance_pieces.empty() && contact.kind == Contact::Kind::outside) {
+    if (block.launch(on, wavelength, key, point, pixel)) path.contact.kind = Contact::Kind::side;
+    return;
+  }
+  block.resume(on, wavelength, key, point, pixel, choices);
 }
 
 /// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows something else.
@@ -561,8 +583,9 @@ std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t numb
 }
 
 CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light,
-                           const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed, CameraEngine engine)
-    : impl_(std::make_unique<Impl>(part, light, scene, policy, seed, engine)) {}
+                           const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed, CameraEngine engine,
+                           const geometry::Entrance* entrance_face)
+    : impl_(std::make_unique<Impl>(part, light, scene, policy, seed, engine, entrance_face)) {}
 CameraTracer::~CameraTracer() = default;
 
 bool CameraTracer::is_by_cells() const {

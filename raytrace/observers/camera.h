@@ -9,6 +9,7 @@
 
 #include "core/angle.h"
 #include "core/progress.h"
+#include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
@@ -16,7 +17,7 @@
 
 namespace retrace::raytrace {
 
-// The camera frame has the axes of the part frame. Its origin in x and y is the centre of the entrance face. The
+// The camera frame has the axes of the part frame. Its origin in x and y is the centre of the entrance face. A plane
 // entrance face is the plane z = part.thickness_mm. Seen from above, x points to the right and y up.
 
 /// A perspective camera that is focused on a point.
@@ -65,7 +66,8 @@ struct CameraScene {
   std::optional<Film> film;  ///< set for infinite parts
   DiscAverage discs = DiscAverage::kernel;
   /// Correction of the lamp's light that enters and leaves through the entrance face. Its blur requires
-  /// DiscAverage::kernel.
+  /// DiscAverage::kernel. For a curved entrance face, it has one gain and no blur, and applies to all light that
+  /// enters.
   ReturnCorrection correction;
   /// True if the picture shows the reflection of the lamp at the outer side of the entrance face.
   bool has_front_reflection = true;
@@ -128,10 +130,14 @@ class CameraTracer {
   /// Number of points per pixel and pass. The points are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
+  /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face. Its paths
+  /// are
+  ///     traced with Embree
   /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer;
   /// if `engine` is `fastest`, Optics::has_uniform_backing() is true for all `light`
   CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light, const CameraScene& scene,
-               const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
+               const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest,
+               const geometry::Entrance* entrance_face = nullptr);
   ~CameraTracer();
 
   /// Returns true if the cell engine is used, which traces many paths together.

@@ -6,10 +6,12 @@
 
 #include "core/angle.h"
 #include "core/error.h"
+#include "core/infinity.h"
 #include "core/random.h"
 #include "core/task_progress.h"
 #include "core/threads.h"
 #include "raytrace/faces/back_surface.h"
+#include "raytrace/faces/entrance_face.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/paths/path_tracer.h"
@@ -86,11 +88,16 @@ struct Deposits {
 /// Records the light of paths, one path after another.
 class Recorder : public ExitObserver {
  public:
-  Recorder(const geometry::Part& part, const Vec2& centre_mm, const LightSetup& light, const DetectorSetting& setting,
+  Recorder(const geometry::Part& part, const Vec2& centre_mm, const PathSetup& light, const DetectorSetting& setting,
            Deposits& deposits)
       : part_(part), centre_mm_(centre_mm), light_(light), setting_(setting), deposits_(deposits) {}
 
+  /// Begins a path at a point of the plane in which the beam starts.
   void enters(const Vec2& position_mm) {
+    if (light_.entrance_face != nullptr) {
+      entry_ = pixel_of_curved_face(position_mm);
+      return;  // the walker reports the light that a curved face reflects
+    }
     entry_ = pixel_at(position_mm);
     if (light_.optics.entrance.scatters()) return;  // in this case the walker reports the reflected light
     add(position_mm, light_.entry.reflected_direction, light_.entry.reflected.i);
@@ -110,6 +117,26 @@ class Recorder : public ExitObserver {
     return setting_.face.pixel_at(position_mm);
   }
 
+  /// Returns the pixel of the point at which the light meets the curved entrance face, or nothing if it misses the
+  /// face.
+  std::optional<std::size_t> pixel_of_curved_face(const Vec2& position_mm) const {
+    const Vec3 start(position_mm.x(), position_mm.y(), light_.entrance_face->beam_height_mm(position_mm));
+    const Vec3 direction = -light_.to_source;
+    const auto met = light_.entrance_face->first_hit({start, direction, {}, false, way_over_part(start, direction)});
+    if (!met) return std::nullopt;
+    return pixel_at((start + met->hit.t * direction).head<2>());
+  }
+
+  /// Returns the length of a ray within the outline of the part.
+  double way_over_part(const Vec3& start, const Vec3& direction) const {
+    double way_mm = kInfinity;
+    for (const LightSetup::Side& side : light_.sides) {
+      const double towards = side.normal.dot(direction);
+      if (towards > 0.0) way_mm = std::min(way_mm, std::max(0.0, (side.offset_mm - side.normal.dot(start)) / towards));
+    }
+    return way_mm;
+  }
+
   void add(const Vec2& position_mm, const Vec3& direction, double power) {
     const Vec2 angles_rad = setting_.frame.angles_rad(direction);
     const auto bin = setting_.angles.bin_of(angles_rad);
@@ -125,7 +152,7 @@ class Recorder : public ExitObserver {
 
   const geometry::Part& part_;
   Vec2 centre_mm_;
-  const LightSetup& light_;
+  const PathSetup& light_;
   const DetectorSetting& setting_;
   Deposits& deposits_;
   std::optional<std::size_t> entry_;
@@ -197,7 +224,7 @@ struct DetectorSampler::Impl {
   struct Light {
     Light(const Impl& all, const DetectorLight& light, const Illumination& illumination, const PathPolicy& policy)
         : setup(all.part, all.surface, all.entrance.centre_mm(), *light.optics, illumination,
-                {all.setting.acceptance_deg}, policy),
+                {all.setting.acceptance_deg}, policy, all.entrance_face.get()),
           weight(light.weight),
           seed(light.seed) {}
     PathSetup setup;
@@ -206,8 +233,9 @@ struct DetectorSampler::Impl {
   };
 
   Impl(const geometry::Part& traced_part, const std::vector<DetectorLight>& all, const Illumination& illumination,
-       const DetectorSetting& wanted, std::uint64_t rays, const PathPolicy& policy)
+       const DetectorSetting& wanted, std::uint64_t rays, const PathPolicy& policy, const geometry::Entrance* curved)
       : part(traced_part), setting(wanted), entrance(part), surface(part, entrance.centre_mm()) {
+    if (curved != nullptr) entrance_face = make_entrance_face(*curved, part, entrance.centre_mm());
     for (const DetectorLight& light : all) {
       lights.emplace_back(*this, light, illumination, policy);
       largest_weight = std::max(largest_weight, light.weight);
@@ -282,6 +310,7 @@ struct DetectorSampler::Impl {
   const DetectorSetting& setting;
   EntranceSampler entrance;
   BackSurface surface;
+  std::unique_ptr<const EntranceFace> entrance_face;  ///< null if the entrance face is plane
   std::deque<Light> lights;
   double largest_weight = 0.0;
   std::uint32_t per_replicate = 1;  ///< number of rays of one wavelength in a replicate
@@ -302,8 +331,8 @@ struct DetectorSampler::Impl {
 
 DetectorSampler::DetectorSampler(const geometry::Part& part, const std::vector<DetectorLight>& lights,
                                  const Illumination& illumination, const DetectorSetting& setting, std::uint64_t rays,
-                                 const PathPolicy& policy)
-    : impl_(std::make_unique<Impl>(part, lights, illumination, setting, rays, policy)) {}
+                                 const PathPolicy& policy, const geometry::Entrance* entrance_face)
+    : impl_(std::make_unique<Impl>(part, lights, illumination, setting, rays, policy, entrance_face)) {}
 
 DetectorSampler::~DetectorSampler() = default;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/light/direction_score.h"
@@ -93,10 +94,11 @@ class DetectorSampler {
 
   /// \param rays number of rays in a pass at all wavelengths together; it is rounded up to a multiple of the number of
   ///        replicates and wavelengths
+  /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face
   /// \pre all arguments and the optics of `lights` outlive the object; there is at least one wavelength
   DetectorSampler(const geometry::Part& part, const std::vector<DetectorLight>& lights,
                   const Illumination& illumination, const DetectorSetting& setting, std::uint64_t rays,
-                  const PathPolicy& policy);
+                  const PathPolicy& policy, const geometry::Entrance* entrance_face = nullptr);
   ~DetectorSampler();
 
   /// Traces the next pass. Returns false if it was cancelled; the finished replicates are kept.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/angle.h"
 #include "raytrace/light/light_setup.h"
@@ -15,19 +16,27 @@ constexpr double kFaintest = 1e-3;
 
 class Follower {
  public:
-  Follower(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm, const LightSetup& setup)
+  Follower(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm, const LightSetup& setup,
+           const EntranceFace* entrance_face)
       : part_(part),
         first_hit_(first_hit),
         setup_(setup),
+        entrance_face_(entrance_face),
         centre_mm_(centre_mm),
         air_mm_(0.4 * (part.thickness_mm + part.size_mm)) {}
 
   LightPath follow(const Vec2& entry_mm) {
     position_ = {entry_mm.x() - centre_mm_.x(), entry_mm.y() - centre_mm_.y(), setup_.thickness_mm};
-    path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
-    direction_ = setup_.entry.direction;
-    light_ = setup_.entry.light;
-    add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});
+    if (entrance_face_ != nullptr) {
+      position_.z() = entrance_face_->beam_height_mm(position_.head<2>());
+      path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
+      if (!enter_curved_face()) return pass_beside();
+    } else {
+      path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
+      direction_ = setup_.entry.direction;
+      light_ = setup_.entry.light;
+      add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});
+    }
     while (path_.steps.size() < kMaxSteps && light_.power() > kFaintest && advance()) {
     }
     if (!is_done_) add({PathEvent::ends, geometry::FacetRole::entrance, position_, 0.0, light_.power()});
@@ -52,12 +61,36 @@ class Follower {
     return false;
   }
 
-  bool advance() { return inside_ ? advance_inside() : advance_outside(); }
+  /// Refracts the light at the curved entrance face. Returns false if the light does not meet the face.
+  bool enter_curved_face() {
+    direction_ = -setup_.to_source;
+    const auto [side, limit] = nearest_side();
+    const auto met = entrance_face_->first_hit({position_, direction_, {}, false, limit});
+    if (!met) return false;
+    position_ += met->hit.t * direction_;
+    entrance_source_ = met->hit.facet;
+    const double cosine = -met->normal.dot(direction_);
+    const auto f = fresnel_at_entrance(setup_.optics, false, cosine);
+    static_cast<Light&>(light_) = setup_.incident;
+    light_.rotate_basis_to_interface(direction_, met->normal);
+    if (!setup_.optics.lossless_entrance) light_ = light_.transmitted(f);
+    direction_ = refracted(direction_, met->normal, 1.0 / setup_.optics.index, cosine, f.cos_refracted);
+    add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(cosine), light_.power()});
+    return true;
+  }
 
-  bool advance_inside() {
+  /// Ends the path of light that passes beside the part.
+  LightPath pass_beside() {
+    path_.power = 1.0;
+    add({PathEvent::escapes, geometry::FacetRole::entrance, position_, 0.0, 1.0});
+    path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * direction_));
+    return std::move(path_);
+  }
+
+  /// Returns the side of the part that the light meets first if nothing else is in its way, and the distance to it.
+  std::pair<const LightSetup::Side*, double> nearest_side() const {
     double limit = std::numeric_limits<double>::infinity();
     const LightSetup::Side* side = nullptr;
-    if (direction_.z() > 0.0) limit = (setup_.thickness_mm - position_.z()) / direction_.z();
     for (const LightSetup::Side& candidate : setup_.sides) {
       const double towards = candidate.normal.dot(direction_);
       if (towards <= 0.0) continue;
@@ -66,14 +99,43 @@ class Follower {
       limit = t;
       side = &candidate;
     }
+    return {side, limit};
+  }
+
+  bool advance() { return inside_ ? advance_inside() : advance_outside(); }
+
+  bool advance_inside() {
+    auto [side, limit] = nearest_side();
+    Vec3 entrance_normal = Vec3::UnitZ();
+    FacetRef entrance_facet;
+    if (const auto met = reach_entrance(limit)) {
+      side = nullptr;
+      limit = met->hit.t;
+      entrance_normal = met->normal;
+      entrance_facet = met->hit.facet;
+    }
     const auto hit = first_hit_({position_, direction_, source_, true, limit});
     if (hit) return meet_facet(*hit);
     if (!std::isfinite(limit)) return false;
     absorb(limit);
     position_ += limit * direction_;
     source_ = {};
+    entrance_source_ = entrance_facet;
     if (side != nullptr) return meet(side->normal, geometry::FacetRole::side, setup_.optics.index);
-    return meet(Vec3::UnitZ(), geometry::FacetRole::entrance, setup_.optics.index);
+    return meet(entrance_normal, geometry::FacetRole::entrance, setup_.optics.index);
+  }
+
+  /// Returns the point at which the light meets the entrance face from inside, or nothing if it does not within
+  /// `limit`.
+  std::optional<EntranceHit> reach_entrance(double limit) const {
+    if (entrance_face_ != nullptr)
+      return entrance_face_->first_hit({position_, direction_, entrance_source_, true, limit});
+    if (!(direction_.z() > 0.0)) return std::nullopt;
+    const double t = (setup_.thickness_mm - position_.z()) / direction_.z();
+    if (t > limit) return std::nullopt;
+    EntranceHit met;
+    met.hit.t = t;
+    return met;
   }
 
   bool advance_outside() {
@@ -96,6 +158,7 @@ class Follower {
     if (inside_) absorb(hit.t);
     position_ += hit.t * direction_;
     source_ = hit.facet;
+    entrance_source_ = {};
     const Vec3 out = inside_ ? facet.normal : Vec3(-facet.normal);
     const auto f = fresnel_at_back(setup_.optics, facet.role, inside_, out.dot(direction_));
     const bool goes_on = split(out, facet.role, f, ratio_at_face(setup_.optics, facet.role, inside_));
@@ -142,6 +205,7 @@ class Follower {
   const geometry::Part& part_;
   const HitFinder& first_hit_;
   const LightSetup& setup_;
+  const EntranceFace* entrance_face_;
   Vec2 centre_mm_;
   double air_mm_;
   LightPath path_;
@@ -149,6 +213,7 @@ class Follower {
   Vec3 direction_ = -Vec3::UnitZ();
   CoherentLight light_;
   FacetRef source_;
+  FacetRef entrance_source_;  ///< facet of a curved entrance face that the light has just left
   bool inside_ = true;
   bool is_done_ = false;
 };
@@ -156,10 +221,10 @@ class Follower {
 }  // namespace
 
 LightPath strongest_path(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm,
-                         const Optics& optics, const Illumination& illumination, double cone_deg,
-                         const Vec2& entry_mm) {
+                         const Optics& optics, const Illumination& illumination, double cone_deg, const Vec2& entry_mm,
+                         const EntranceFace* entrance_face) {
   const LightSetup setup(part, centre_mm, optics, illumination, {cone_deg});
-  return Follower(part, first_hit, centre_mm, setup).follow(entry_mm);
+  return Follower(part, first_hit, centre_mm, setup, entrance_face).follow(entry_mm);
 }
 
 }  // namespace retrace::raytrace

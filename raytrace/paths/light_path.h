@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/part/part.h"
+#include "raytrace/faces/entrance_face.h"
 #include "raytrace/faces/surface_ray.h"
 #include "raytrace/light/optics.h"
 
@@ -47,12 +48,15 @@ struct LightPath {
 /// Function that returns the first facet that a ray meets, or nothing if it meets none.
 using HitFinder = std::function<std::optional<SurfaceHit>(const SurfaceRay& ray)>;
 
-/// Traces a single path from a point of the entrance face. At every interface, the path continues with the stronger of
+/// Traces a single path from a point of the entrance face. With a curved entrance face, it is a point of the horizontal
+/// plane that touches the face from above. At every interface, the path continues with the stronger of
 /// the reflected and the transmitted light. The path is meant for drawings and does not show how the power is split.
 /// \param first_hit finds facets of the part, in coordinates with the origin `centre_mm`
 /// \param cone_deg half angle of the acceptance cone
+/// \param entrance_face curved entrance face with the origin `centre_mm`; null for the plane face
 /// \pre the part is finite and its facets are smooth
 LightPath strongest_path(const geometry::Part& part, const HitFinder& first_hit, const Vec2& centre_mm,
-                         const Optics& optics, const Illumination& illumination, double cone_deg, const Vec2& entry_mm);
+                         const Optics& optics, const Illumination& illumination, double cone_deg, const Vec2& entry_mm,
+                         const EntranceFace* entrance_face = nullptr);
 
 }  // namespace retrace::raytrace

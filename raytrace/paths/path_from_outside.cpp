@@ -108,6 +108,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
     state.above = true;
     const auto met = setup_.entrance_face->first_hit({state.position, state.direction, {}, false, reach_mm});
     if (!met) return false;
+    arrival_ = Arrival::entrance;
     state.position += met->hit.t * state.direction;
     if (meet_entrance_face(state, met->hit, met->normal)) pending_.push_back(state);
     return true;
@@ -127,6 +128,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
 /// Processes light that meets the plane entrance face from the air.
 bool PathWalker::arrive_at_entrance(State& state) {
   ++tally_.segments;
+  arrival_ = Arrival::entrance;
   if (setup_.contaminated_entrance) {
     enter_contaminated(state);
     return true;
@@ -155,6 +157,7 @@ bool PathWalker::arrive_at_entrance(State& state) {
 /// Processes light that meets a side of the plate from outside, or the border wall below z = 0.
 bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
   ++tally_.segments;
+  arrival_ = Arrival::side;
   const bool is_border_wall = state.position.z() < 0.0;
   const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
   if (is_border_wall && optics.absorbing_walls) {
@@ -187,6 +190,7 @@ bool PathWalker::arrive_from_below(State& state) {
   const Step step = setup_.infinite() ? step_outside_periodic(state) : step_outside(state);
   if (step.end == End::escape) return false;
   ++tally_.segments;
+  arrival_ = Arrival::back;
   if (step.end == End::facet) {
     state.last_exit_role = setup_.surface.facet(step.hit.facet).role;  // role of the face that reflects the light
     if (meet_facet(state, step.hit)) pending_.push_back(state);
@@ -207,10 +211,12 @@ bool PathWalker::begin_inside(State& state, double tolerance_mm) {
   }
   if (const auto met = setup_.surface.first_hit({state.position, -state.direction, {}, true, tolerance_mm})) {
     state.position -= met->t * state.direction;
+    arrival_ = Arrival::back;
     state.last_exit_role = setup_.surface.facet(met->facet).role;
     if (meet_facet(state, *met)) pending_.push_back(state);
     return true;
   }
+  arrival_ = Arrival::inside;
   state.inside = true;
   pending_.push_back(state);
   return true;

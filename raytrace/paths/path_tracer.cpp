@@ -378,13 +378,15 @@ void PathWalker::send_back(const State& state, const Light& light, const Vec3& d
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   (state.scattered ? tally_.scattered : tally_.entrance_reflected)[cone] += in_source_axes(light, direction);
   const Account outside = state.scattered ? Account::scattered_out : Account::front_specular;
-  report_exit(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
+  report_exit(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light, true);
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
 /// Reports light that leaves the part at the position of `state` to the observer.
-void PathWalker::report_exit(Account account, const State& state, const Vec3& direction, const Light& light) const {
-  if (observer_ != nullptr) observer_->on_exit({account, state.position, direction, light, state.shift_mm});
+void PathWalker::report_exit(Account account, const State& state, const Vec3& direction, const Light& light,
+                             bool is_front_reflection) const {
+  if (observer_ != nullptr)
+    observer_->on_exit({account, state.position, direction, light, state.shift_mm, is_front_reflection});
 }
 
 /// Returns the optics of the element to which a facet belongs. They differ from those of other elements if the back of

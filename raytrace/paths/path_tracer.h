@@ -78,6 +78,12 @@ class PathWalker {
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
+  /// Place where the light of launch() first meets the part. `inside` means that the light starts in the part.
+  enum class Arrival { entrance, side, back, inside };
+  /// Returns the place where the light of the last call of launch() has met the part.
+  /// \pre this call has returned true
+  Arrival arrival() const { return arrival_; }
+
  private:
   struct State : Ray {
     Vec3 position = Vec3::Zero();
@@ -126,7 +132,8 @@ class PathWalker {
   const EntranceScatter& scatter_at_face(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
-  void report_exit(Account account, const State& state, const Vec3& direction, const Light& light) const;
+  void report_exit(Account account, const State& state, const Vec3& direction, const Light& light,
+                   bool is_front_reflection = false) const;
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   Vec3 normal_at(const State& state, const FacetRef& where) const;
@@ -164,6 +171,7 @@ class PathWalker {
   EntranceScatter scatter_;
   Vec3 to_source_ = Vec3::UnitZ();         ///< direction opposite to the light that is traced
   bool splits_at_first_interface_ = true;  ///< true if both branches of the first interface are traced at any power
+  Arrival arrival_ = Arrival::entrance;
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;

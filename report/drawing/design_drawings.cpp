@@ -60,9 +60,15 @@ DesignDrawings design_drawings(const studies::Inspection& inspection) {
   if (inspection.entrance) {
     const geometry::Part part = design::part_of_design(design, nullptr);
     const auto heights = studies::heights_of(design::entrance_of_design(design, part), part);
-    return {.plan = plan_svg(studies::draw_plan(design, part)),
+    // On a substrate, a section cannot show the true lengths of elements.
+    const bool has_section = !design.elements() || !design.part().substrate;
+    const studies::DesignDrawing drawing =
+        has_section ? studies::draw_curved_design(design, part, heights) : studies::draw_plan(design, part);
+    return {.plan = plan_svg(drawing),
+            .section = drawing.section ? section_svg(drawing) : "",
             .view = view_png(studies::view_of(design, part, heights)),
-            .entrance = profile_svg(design, *inspection.entrance)};
+            .entrance = profile_svg(design, *inspection.entrance),
+            .warnings = drawing.warnings};
   }
   if (design.elements() && design.part().substrate) return {.view = view_png(studies::view_of(design))};
   const studies::DesignDrawing drawing = studies::draw_design(design, design::part_of_design(design, nullptr));

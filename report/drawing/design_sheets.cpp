@@ -199,6 +199,29 @@ Panel plan_panel(const PlanPanel& panel) {
   return result;
 }
 
+/// Heights of the back and of the entrance face in a section.
+struct SectionHeights {
+  double deepest_mm = 0.0;       ///< lowest point of the back, at most 0
+  double highest_back_mm = 0.0;  ///< highest point of the back
+  double lowest_mm = 0.0;        ///< lowest point of the entrance face
+  double highest_mm = 0.0;       ///< highest point of the entrance face
+
+  explicit SectionHeights(const studies::SectionView& view)
+      : highest_back_mm(view.outline_mm.front().y()),
+        lowest_mm(view.outline_mm.back().y()),
+        highest_mm(view.outline_mm.back().y()) {
+    const std::size_t on_back = view.outline_mm.size() - view.entrance_corners;
+    for (std::size_t k = 0; k < on_back; ++k) {
+      deepest_mm = std::min(deepest_mm, view.outline_mm[k].y());
+      highest_back_mm = std::max(highest_back_mm, view.outline_mm[k].y());
+    }
+    for (std::size_t k = on_back; k < view.outline_mm.size(); ++k) {
+      lowest_mm = std::min(lowest_mm, view.outline_mm[k].y());
+      highest_mm = std::max(highest_mm, view.outline_mm[k].y());
+    }
+  }
+};
+
 /// Converts heights to drawing coordinates. The central part of a thick plate may be omitted.
 struct HeightScale {
   double scale = 1.0;
@@ -218,12 +241,12 @@ struct HeightScale {
   }
 };
 
-HeightScale height_scale(const SectionPanel& panel, double scale, double deepest_mm, double highest_mm) {
-  HeightScale z{scale, panel.thickness_mm, 0.0, 0.0};
-  const double depth = std::max(highest_mm - deepest_mm, 1e-12);
-  if (panel.thickness_mm > kThickPlate * depth) {
-    z.break_from_mm = std::max(highest_mm, 0.0) + 0.9 * depth;
-    z.break_to_mm = panel.thickness_mm - 0.6 * depth;
+HeightScale height_scale(const SectionHeights& heights, double scale) {
+  HeightScale z{scale, heights.highest_mm, 0.0, 0.0};
+  const double depth = std::max(heights.highest_back_mm - heights.deepest_mm, 1e-12);
+  if (heights.lowest_mm > kThickPlate * depth) {
+    z.break_from_mm = std::max(heights.highest_back_mm, 0.0) + 0.9 * depth;
+    z.break_to_mm = heights.lowest_mm - 0.6 * depth;
   }
   return z;
 }
@@ -267,37 +290,33 @@ void draw_angle(SvgGroup& group, const studies::AngleDimension& angle, const ToP
 
 Panel section_panel(const SectionPanel& panel) {
   const studies::SectionView& view = panel.view;
-  double deepest = 0.0;
-  double highest = 0.0;
-  for (std::size_t k = 0; k + 2 < view.outline_mm.size(); ++k) {
-    deepest = std::min(deepest, view.outline_mm[k].y());
-    highest = k == 0 ? view.outline_mm[k].y() : std::max(highest, view.outline_mm[k].y());
-  }
+  const SectionHeights heights(view);
+  const double deepest = heights.deepest_mm;
+  const double top_mm = heights.highest_mm;
   const double width_mm = view.x_to_mm - view.x_from_mm;
-  const double tall_mm = std::min(panel.thickness_mm - deepest, (kThickPlate + 1.0) * (highest - deepest));
+  const double tall_mm = std::min(
+      top_mm - deepest, (kThickPlate + 1.0) * (heights.highest_back_mm - deepest) + (top_mm - heights.lowest_mm));
   const double scale = std::min(1.35 * kWholeWidth / width_mm, 0.9 * kWholeHeight / tall_mm);
-  const HeightScale z = height_scale(panel, scale, deepest, highest);
+  const HeightScale z = height_scale(heights, scale);
   const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - view.x_from_mm), z.at(p.y())}; };
-  Panel result{{}, place_of({view.x_from_mm, panel.thickness_mm}, scale, "z")};
+  Panel result{{}, place_of({view.x_from_mm, top_mm}, scale, "z")};
   SvgGroup& group = result.group;
   const std::vector<Point> outline = on_paper(view.outline_mm, at);
-  const auto corners = static_cast<std::ptrdiff_t>(outline.size());
+  const auto on_back = static_cast<std::ptrdiff_t>(outline.size() - view.entrance_corners);
   group.outline(panel.is_continued ? "body bare" : "body", outline);
   if (panel.is_continued) {
-    group.path("outline", {outline.begin(), outline.begin() + corners - 2});
-    group.path("outline", {outline.begin() + corners - 2, outline.end()});
+    group.path("outline", {outline.begin(), outline.begin() + on_back});
+    group.path("outline", {outline.begin() + on_back, outline.end()});
   }
   if (z.is_interrupted()) draw_break(group, z, scale * width_mm);
   if (panel.is_continued)
-    for (const double x_mm : {view.x_from_mm, view.x_to_mm}) {
-      const double foot_mm =
-          x_mm == view.x_from_mm ? view.outline_mm.front().y() : view.outline_mm[view.outline_mm.size() - 3].y();
-      const Point top = at({x_mm, panel.thickness_mm});
-      const Point foot = at({x_mm, foot_mm});
+    for (const bool is_left : {true, false}) {
+      const Point top = is_left ? outline.back() : outline[static_cast<std::size_t>(on_back)];
+      const Point foot = is_left ? outline.front() : outline[static_cast<std::size_t>(on_back) - 1];
       group.path("break", broken_line({top.x, top.y - 7.0}, {foot.x, foot.y + 7.0}));
     }
   if (panel.angle) draw_angle(group, *panel.angle, at, -deepest);
-  draw_dimensions(group, panel.dimensions, at, at({view.x_from_mm, panel.thickness_mm}), at({view.x_to_mm, deepest}));
+  draw_dimensions(group, panel.dimensions, at, at({view.x_from_mm, top_mm}), at({view.x_to_mm, deepest}));
   return result;
 }
 

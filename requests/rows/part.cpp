@@ -21,7 +21,13 @@ constexpr Row kSolidRows[] = {{"what",
                                "thickness of the mould below its deepest point",
                                access<&SolidRequest::block_mm>,
                                {.value = "T", .otherwise = "the plate's thickness"},
-                               kNeedMould}};
+                               kNeedMould},
+                              {"surface_error_mm",
+                               Number{{.low = 1e-6, .high = 10.0}},
+                               "largest distance along z between the triangles of an exact entrance surface and the "
+                               "surface",
+                               access<&SolidRequest::surface_error_mm>,
+                               {.value = "E", .otherwise = "0.001"}}};
 
 constexpr NumberRange kDiscs{.low = 1.0, .high = 120.0};
 

@@ -33,9 +33,13 @@ constexpr std::size_t kPartsOfProbes = 4;
 constexpr double kAsideDeg = 30.0;
 constexpr RandomKey kProbeKey{.seed = kAppearanceSeed, .stream = 2};
 
-/// Checks that the exact engine supports the design.
+/// Checks that the exact engine supports the design, and that the design returns light like a material.
 /// \throw InputError if the engine does not support it
 void check_engine(const design::Design& design, PhotometrySettings request) {
+  if (design.entrance)
+    throw InputError(design.where(design.entrance_key()),
+                     "a material returns light in the same way at every point, but the light that returns behind an "
+                     "[entrance_surface] depends on the point: use retrace image --camera or photometry");
   request.engine = raytrace::Engine::automatic;
   const Photometer photometer(design, request, kIntervalsPerFunction);
   if (!photometer.is_exact())

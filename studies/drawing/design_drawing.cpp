@@ -171,8 +171,28 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
   return angle;
 }
 
-void add_section(DesignDrawing& drawing, const design::Design& design, const Part& part, const ArrayFigures& a) {
-  const bool whole = part.spec.array.arrangement == Arrangement::single || !design.elements();
+/// Adds the dimensions of the entrance face in a section: its height at the right end and, for a curved face, its
+/// highest point.
+void add_heights(SectionPanel& panel, const Part& part) {
+  const SectionView& view = panel.view;
+  if (view.entrance_corners == 2) {
+    panel.dimensions.push_back(
+        {Side::right, {view.x_to_mm, 0.0}, {view.x_to_mm, part.thickness_mm}, "thickness", part.thickness_mm});
+    return;
+  }
+  const std::vector<Vec2> entrance = view.entrance_mm();
+  const auto is_lower = [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); };
+  const Vec2 highest = *std::max_element(entrance.begin(), entrance.end(), is_lower);
+  const Vec2 edge = entrance.front();
+  add(panel.dimensions, Side::right, {edge.x(), 0.0}, edge, "height at edge");
+  if (highest.y() > edge.y() + kSmallest * view.x_to_mm)
+    add(panel.dimensions, Side::right, {highest.x(), 0.0}, highest, "highest point");
+}
+
+void add_section(DesignDrawing& drawing, const design::Design& design, const Part& part, const ArrayFigures& a,
+                 const geometry::EntranceHeights& entrance_height = {}) {
+  const bool whole = part.spec.array.arrangement == Arrangement::single || !design.elements() ||
+                     (entrance_height && a.count.x() <= kMaxSectionElements);
   double from = a.extent_mm.lower.x();
   double to = a.extent_mm.upper.x();
   if (!whole) {
@@ -182,7 +202,7 @@ void add_section(DesignDrawing& drawing, const design::Design& design, const Par
     from = infinite ? left : std::max(from, left);
     to = infinite ? right : std::min(to, right);
   }
-  const auto view = section_view(part, a.section_y_mm, from, to);
+  const auto view = section_view(part, a.section_y_mm, from, to, entrance_height);
   if (!view) {
     drawing.warnings.push_back(
         {"no_section", design.source_name() +
@@ -192,12 +212,10 @@ void add_section(DesignDrawing& drawing, const design::Design& design, const Par
   SectionPanel panel;
   panel.title = "Section B\u2013B";
   panel.view = *view;
-  panel.thickness_mm = part.thickness_mm;
   panel.is_continued = !whole;
   const double left = view->x_from_mm;
-  const double right = view->x_to_mm;
   const double deepest = -part.element_depth_mm;
-  panel.dimensions.push_back({Side::right, {right, 0.0}, {right, part.thickness_mm}, "thickness", part.thickness_mm});
+  add_heights(panel, part);
   panel.dimensions.push_back(
       {Side::left, {!design.elements() ? left : a.root_mm.x(), deepest}, {left, 0.0}, "depth", part.element_depth_mm});
   if (const auto* rtp = std::get_if<RtpElement>(&part.spec.element); rtp != nullptr && design.elements()) {
@@ -308,6 +326,14 @@ std::vector<PlanZone> zones_of(const design::ZonedPart& zoned, const Part& part)
   return zones;
 }
 
+/// Returns the y of a row of elements near the centre of the part, with the same shift as the dimensioned element.
+double row_near_centre_mm(const ArrayFigures& a) {
+  const double centre_mm = a.extent_mm.centre().y();
+  const double step_mm = (a.shift_mm > 0.0 ? 2.0 : 1.0) * a.pitch_mm.y();
+  if (!(step_mm > 0.0)) return centre_mm;
+  return a.root_mm.y() + step_mm * std::round((centre_mm - a.root_mm.y()) / step_mm);
+}
+
 }  // namespace
 
 DesignDrawing draw_plan(const design::Design& design, const Part& part) {
@@ -328,6 +354,19 @@ DesignDrawing draw_plan(const design::Design& design, const Part& part) {
     add_plan(drawing, part, a);
   }
   drawing.remarks.emplace_back("lengths in mm");
+  return drawing;
+}
+
+DesignDrawing draw_curved_design(const design::Design& design, const Part& part,
+                                 const geometry::EntranceHeights& entrance_height) {
+  DesignDrawing drawing = draw_plan(design, part);
+  ArrayFigures a = array_figures(design, part);
+  if (a.count.x() <= kMaxSectionElements) {
+    a.section_y_mm = row_near_centre_mm(a);
+    a.root_mm.y() = a.section_y_mm;
+  }
+  drawing.plan.front().section_y_mm = a.section_y_mm;
+  add_section(drawing, design, part, a, entrance_height);
   return drawing;
 }
 

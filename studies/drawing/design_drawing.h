@@ -60,7 +60,6 @@ struct PlanPanel {
 struct SectionPanel {
   std::string title;
   SectionView view;
-  double thickness_mm = 0.0;
   bool is_continued = false;          ///< true: the part continues beyond the left and right end
   std::vector<Dimension> dimensions;  ///< dimensions in (x, z)
   std::optional<AngleDimension> angle;
@@ -75,12 +74,20 @@ struct DesignDrawing {
   Warnings warnings;
 };
 
+/// Maximum number of elements along x for which the section of a part with a curved entrance face shows the whole part.
+inline constexpr double kMaxSectionElements = 80.0;
 /// Maximum number of faces that a plan draws individually.
 inline constexpr std::size_t kMaxPlanFaces = 16'000;
 
 /// Returns the drawing of a design.
 /// \param part part of the design
 DesignDrawing draw_design(const design::Design& design, const geometry::Part& part);
+
+/// Returns the drawing of a design with a curved entrance face. The section shows the whole width of the part through
+/// its centre, unless its elements are too small. \param part part of the design \param entrance_height heights of the
+/// entrance face
+DesignDrawing draw_curved_design(const design::Design& design, const geometry::Part& part,
+                                 const geometry::EntranceHeights& entrance_height);
 
 /// Returns the drawing of a design without the section.
 /// \param part part of the design

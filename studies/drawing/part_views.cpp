@@ -19,6 +19,8 @@ constexpr double kMaxWallNormalZ = 1e-6;
 constexpr double kSame = 1e-7;
 // Tolerance of the cosine between normals. Within it, neighbours are one face, for example triangles of a mesh.
 constexpr double kSameNormal = 1e-9;
+// Number of intervals of the profile of a curved entrance face in a section.
+constexpr int kProfilePoints = 400;
 
 Rectangle box_of(const SurfacePatch& patch) {
   Rectangle box{Vec2::Constant(INFINITY), Vec2::Constant(-INFINITY)};
@@ -197,6 +199,18 @@ std::vector<DesignExcerpt> pieces_of(const Part& part, double y_mm, double from,
   return pieces;
 }
 
+/// Adds the profile of a curved entrance face to a section, from right to left.
+void add_profile(SectionView& view, const geometry::EntranceHeights& entrance_height) {
+  for (int k = kProfilePoints; k >= 0; --k) {
+    const double share = static_cast<double>(k) / kProfilePoints;
+    const double x_mm = view.x_from_mm + share * (view.x_to_mm - view.x_from_mm);
+    // Points are moved inwards a little, because the face may end at the outline.
+    const double middle_mm = 0.5 * (view.x_from_mm + view.x_to_mm);
+    const double z_mm = entrance_height({middle_mm + (1.0 - 1e-7) * (x_mm - middle_mm), view.y_mm});
+    if (std::isfinite(z_mm)) view.outline_mm.emplace_back(x_mm, z_mm);
+  }
+}
+
 }  // namespace
 
 PlanView plan_view(const Part& part, const Rectangle& window_mm) {
@@ -227,7 +241,12 @@ std::size_t faces_near(const Part& part, const Rectangle& window_mm) {
   return faces;
 }
 
-std::optional<SectionView> section_view(const Part& part, double y_mm, double x_from_mm, double x_to_mm) {
+std::vector<Vec2> SectionView::entrance_mm() const {
+  return {outline_mm.end() - static_cast<std::ptrdiff_t>(entrance_corners), outline_mm.end()};
+}
+
+std::optional<SectionView> section_view(const Part& part, double y_mm, double x_from_mm, double x_to_mm,
+                                        const geometry::EntranceHeights& entrance_height) {
   const double same_mm = kSame * part.size_mm;
   // The section is shifted a little from the borders of facets, so that each facet is either hit or missed.
   const std::vector<DesignExcerpt> pieces = pieces_of(part, y_mm + 0.1 * same_mm, x_from_mm, x_to_mm);
@@ -242,8 +261,14 @@ std::optional<SectionView> section_view(const Part& part, double y_mm, double x_
     add(pieces[k].left);
     add(pieces[k].right);
   }
-  add({view.x_to_mm, part.thickness_mm});
-  add({view.x_from_mm, part.thickness_mm});
+  const std::size_t on_back = view.outline_mm.size();
+  if (entrance_height) {
+    add_profile(view, entrance_height);
+  } else {
+    add({view.x_to_mm, part.thickness_mm});
+    add({view.x_from_mm, part.thickness_mm});
+  }
+  view.entrance_corners = view.outline_mm.size() - on_back;
   return view;
 }
 

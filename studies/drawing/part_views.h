@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/part.h"
 
 namespace retrace::studies {
@@ -42,11 +43,17 @@ struct SectionView {
   double y_mm = 0.0;
   double x_from_mm = 0.0;
   double x_to_mm = 0.0;
-  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; the last two corners are on the entrance face
+  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; the last corners are on the entrance face
+  std::size_t entrance_corners = 2;        ///< number of these corners, from right to left
+
+  /// Returns the corners on the entrance face, from right to left.
+  std::vector<geometry::Vec2> entrance_mm() const;
 };
 
 /// Returns the section of a part.
+/// \param entrance_height heights of a curved entrance face; empty for a plane face
 /// \return nothing if the plane does not hit the part, or if the back has overhangs (meshes)
-std::optional<SectionView> section_view(const geometry::Part& part, double y_mm, double x_from_mm, double x_to_mm);
+std::optional<SectionView> section_view(const geometry::Part& part, double y_mm, double x_from_mm, double x_to_mm,
+                                        const geometry::EntranceHeights& entrance_height = {});
 
 }  // namespace retrace::studies

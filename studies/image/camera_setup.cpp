@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "geometry/entrance/entrance_mesh.h"
 #include "raytrace/observers/photometric_geometry.h"
 
 namespace retrace::studies {
@@ -33,8 +34,14 @@ std::string text_of(const Vec3& p) {
   return fmt::format("{},{},{}", shortest(p.x()), shortest(p.y()), shortest(p.z()));
 }
 
-bool is_inside(const geometry::Part& part, const Vec3& p) {
-  if (p.z() > part.thickness_mm || p.z() < -part.element_depth_mm) return false;
+/// Returns the height of the entrance face at a point of the part frame that is within the outline of the part.
+double face_height(const design::OpticalModel& model, const Vec2& at_mm) {
+  return model.entrance ? geometry::entrance_height(*model.entrance, at_mm) : model.part.thickness_mm;
+}
+
+bool is_inside(const design::OpticalModel& model, const Vec3& p) {
+  const geometry::Part& part = model.part;
+  if (p.z() < -part.element_depth_mm) return false;
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   const Vec2 at = p.head<2>() + box.centre();
   for (std::size_t k = 0; k < part.outline.size(); ++k) {
@@ -42,7 +49,7 @@ bool is_inside(const geometry::Part& part, const Vec3& p) {
     const Vec2 along = part.outline[(k + 1) % part.outline.size()] - a;
     if (along.x() * (at.y() - a.y()) - along.y() * (at.x() - a.x()) < 0.0) return false;
   }
-  return true;
+  return p.z() <= face_height(model, at);
 }
 
 /// Returns true if a point is on the side of the sheet where the body of the part is.
@@ -84,14 +91,16 @@ void check_film(const CameraRequest& r, bool is_infinite) {
 }
 
 raytrace::CameraScene scene_of(const CameraRequest& r, const std::optional<PhotometricLamp>& lamp,
-                               const geometry::Part& part, const Vec3& reference_axis) {
+                               const design::OpticalModel& model, const Vec3& reference_axis) {
+  const geometry::Part& part = model.part;
   raytrace::CameraScene scene;
   const raytrace::PhotometricGeometry geometry =
       raytrace::geometry_from({Angle::from_deg(r.v_deg), Angle::from_deg(r.h_deg)}, Angle::from_deg(r.observation_deg),
                               Angle::from_deg(r.rotation_deg));
   const raytrace::PhotometricDirections towards =
       raytrace::in_part_frame(raytrace::directions_of(geometry), reference_axis);
-  const Vec3 target(0.0, 0.0, part.thickness_mm);
+  const Vec2 centre = part.period_mm ? Vec2(Vec2::Zero()) : geometry::bounding_box(part.outline).centre();
+  const Vec3 target(0.0, 0.0, face_height(model, centre));
   const double distance_mm = 1e3 * r.distance_m;
   scene.view.target_mm = target;
   scene.view.eye_mm = r.eye_mm ? to_vec(*r.eye_mm) : Vec3(target + distance_mm * towards.to_observer);
@@ -124,9 +133,9 @@ Vec3 to_lamp(const raytrace::CameraScene& scene) {
   return scene.lamp.position_mm - scene.view.target_mm;
 }
 
-void check_position(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& position, Field field,
-                    const char* what) {
-  const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, position) : is_inside(part, position);
+void check_position(const design::OpticalModel& model, const raytrace::CameraScene& scene, const Vec3& position,
+                    Field field, const char* what) {
+  const bool bad = scene.film ? is_behind(*scene.film, model.part.thickness_mm, position) : is_inside(model, position);
   if (bad)
     throw InputError(field,
                      fmt::format("the {} must be outside the {}, got {} mm", what,

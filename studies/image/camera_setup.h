@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/field.h"
-#include "geometry/part/part.h"
+#include "design/optical_model.h"
 #include "geometry/vec.h"
 #include "raytrace/observers/camera.h"
 #include "requests/image.h"
@@ -22,11 +22,11 @@ std::array<double, 2> film_of(const CameraRequest& request);
 /// \throw InputError at the field that is not allowed or out of range
 void check_film(const CameraRequest& request, bool is_infinite);
 
-/// Returns the scene of a request.
+/// Returns the scene of a request. The camera looks at the centre of the entrance face.
 /// \param lamp photometric data of the lamp; empty if the request contains its illuminance
 /// \param reference_axis direction H = V = 0 in the part frame
 raytrace::CameraScene scene_of(const CameraRequest& request, const std::optional<PhotometricLamp>& lamp,
-                               const geometry::Part& part, const geometry::Vec3& reference_axis);
+                               const design::OpticalModel& model, const geometry::Vec3& reference_axis);
 
 /// Returns the angle between two vectors.
 double angle_deg(const geometry::Vec3& a, const geometry::Vec3& b);
@@ -38,8 +38,8 @@ geometry::Vec3 to_lamp(const raytrace::CameraScene& scene);
 /// Checks that the camera or the lamp is outside of the part, and is not the point that the camera looks at.
 /// \param what name of the object in the message
 /// \throw InputError at `field`
-void check_position(const geometry::Part& part, const raytrace::CameraScene& scene, const geometry::Vec3& position,
-                    Field field, const char* what);
+void check_position(const design::OpticalModel& model, const raytrace::CameraScene& scene,
+                    const geometry::Vec3& position, Field field, const char* what);
 
 /// Checks that the luminances of the lamp and the surroundings can be stored in picture files.
 /// \param has_file true if the intensity of the lamp comes from a file

@@ -83,10 +83,10 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
   dyed_ = with_dye(design_, dye);
   if (!dye.values.empty()) set_where(dyed_, "body.absorption_per_mm", {request_.dye, 0, "absorption_per_mm"});
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
-  scene_ = scene_of(request_, lamp_, model_.part, design_.reference_axis());
+  scene_ = scene_of(request_, lamp_, model_, design_.reference_axis());
   scene_.discs = discs;
-  check_position(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
-  check_position(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
+  check_position(model_, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
+  check_position(model_, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
   const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
   check_luminances(scene_, lamp_.has_value());
@@ -161,7 +161,7 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
                        std::uint32_t seed) {
     tracers->layers.push_back(std::make_unique<const raytrace::CameraTracer>(
         model_.part, optics, scene, raytrace::kCameraPolicy, seed,
-        by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree));
+        by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree, model_.curved_entrance()));
   };
   tracers->responses = lights_.size();
   const bool is_separate = lights_.size() > 1 && scene_.surroundings.has_light();
@@ -171,7 +171,10 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
     const auto count = static_cast<double>(lights_.size());
     PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
     std::optional<CameraLight::Returned> returned = light.without_diffraction();
-    if (!light.has_diffraction()) {
+    if (model_.entrance) {
+      tracers->no_diffraction = request_.diffraction ? NoDiffraction(raytrace::Obstacle::curved_entrance)
+                                                     : NoDiffraction(Undiffracted::not_requested);
+    } else if (!light.has_diffraction()) {
       tracers->no_diffraction = light.photometer().why_undiffracted();
     } else if (is_by_kernel && !tracers->no_diffraction) {
       try {

@@ -162,7 +162,8 @@ raytrace::AngularRings DetectorStudy::pilot_rings(const raytrace::PixelGrid& fac
   const raytrace::DetectorSetting setting = setting_of({face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg);
   const std::uint64_t rays = std::min(request_.samples.value_or(kPilotRays), kPilotRays);
   const std::vector<raytrace::DetectorLight> lights = this->lights();
-  raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting, rays, {});
+  raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting, rays, {},
+                                    model_.curved_entrance());
   if (!sampler.add_pass(nullptr, cancel)) return {};
   return sampler.maps().rings;
 }
@@ -171,7 +172,7 @@ void DetectorStudy::trace_rays(const raytrace::DetectorSetting& setting, Progres
                                DetectorResult& result) const {
   const std::vector<raytrace::DetectorLight> lights = this->lights();
   raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting,
-                                    request_.samples.value_or(rays_per_pass_), {});
+                                    request_.samples.value_or(rays_per_pass_), {}, model_.curved_entrance());
   // One pass is sufficient if pixels are not merged, because no error is then requested.
   const bool is_fixed = request_.samples || !(request_.bin_error > 0.0);
   const std::uint32_t passes = is_fixed ? 1 : kMaxDetectorPasses;

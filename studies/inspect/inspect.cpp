@@ -13,6 +13,7 @@
 #include "geometry/check/boundary_check.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/lattice.h"
+#include "geometry/entrance/curved_boundary.h"
 #include "raytrace/balls/ball_forms.h"
 
 namespace retrace::studies {
@@ -21,6 +22,9 @@ namespace {
 // Maximum number of elements whose boundary is checked completely. For more elements, a smaller part of the same kind
 // is checked, because CGAL would need many seconds.
 constexpr double kElementsToCheck = 1000.0;
+// Distance between the triangles of the boundary that is checked and a curved entrance face, relative to the size of
+// the part.
+constexpr double kCheckedError = 1e-3;
 
 /// Returns a finite part with the same elements, which is small enough for a quick check with CGAL. If the design is
 /// small, returns the design itself.
@@ -47,8 +51,8 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
   return small;
 }
 
-std::string finding_of(const geometry::Part& part) {
-  const geometry::BoundaryReport report = geometry::check_boundary(geometry::closed_boundary(part));
+std::string finding_of(const geometry::BoundaryMesh& boundary) {
+  const geometry::BoundaryReport report = geometry::check_boundary(boundary);
   // With angle errors or cant, neighbouring elements may differ in height. The part may then touch itself where more
   // than three cells meet.
   return report.ok()           ? "closed, free of self-intersections"
@@ -57,12 +61,20 @@ std::string finding_of(const geometry::Part& part) {
                                : "crosses itself";
 }
 
-std::string boundary_finding(const design::Design& design, double element_mm) {
+/// Returns the boundary of a part with the curved entrance face of the model, or with a plane face if there is none.
+geometry::BoundaryMesh boundary_to_check(const geometry::Part& part, const design::OpticalModel& model) {
+  if (!model.entrance) return geometry::closed_boundary(part);
+  const double size_mm = geometry::bounding_box(part.outline).size().maxCoeff();
+  return geometry::curved_boundary(part, *model.entrance, kCheckedError * size_mm).mesh;
+}
+
+std::string boundary_finding(const design::Design& design, const design::OpticalModel& model) {
   bool is_whole = design.facet_planes() != nullptr || design.mask() != nullptr;
-  const geometry::Part part =
-      is_whole ? design::part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
+  const geometry::Part part = is_whole
+                                  ? design::part_of(design)
+                                  : geometry::build_part(part_to_check(design.part(), model.part.size_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements are too small compared with the array";
-  const std::string finding = finding_of(part);
+  const std::string finding = finding_of(is_whole ? boundary_to_check(part, model) : geometry::closed_boundary(part));
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
 
@@ -224,7 +236,7 @@ void add_zones(Inspection& result, const design::OpticalModel& model) {
   const geometry::Part& part = model.part;
   result.zones = report_zones(result.design, model);
   result.boundary = static_cast<double>(part.elements_full + part.elements_partial) <= kElementsToCheck
-                        ? finding_of(part)
+                        ? finding_of(boundary_to_check(part, model))
                         : "not checked: more than 1000 elements";
 }
 
@@ -242,7 +254,7 @@ WetReport report_wet_back(const design::Design& design, const design::OpticalMod
 
 Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library) {
   if (design.balls()) return inspect_balls(design, library);
-  const design::OpticalModel model = design::make_model(design, library, design::Entrances::any);
+  const design::OpticalModel model = design::make_model(design, library);
   const geometry::Part& part = model.part;
   Inspection result = report_light(design, model);
   result.elements_full = part.elements_full;
@@ -277,7 +289,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   if (model.wet_elements) result.wet_back = report_wet_back(design, model);
   result.dead_zone_fraction = geometry::edge_fraction(geometry::finished_cell(
       geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
-  result.boundary = boundary_finding(design, part.size_mm);
+  result.boundary = boundary_finding(design, model);
   add_warnings(result, part);
   return result;
 }

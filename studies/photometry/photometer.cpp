@@ -52,8 +52,7 @@ double way_through_mm(const design::Design& design) {
 }
 
 design::OpticalModel model_of(const design::Design& design, const materials::MaterialLibrary& library) {
-  return design.balls() ? design::make_light_model(design, library)
-                        : design::make_model(design, library, design::Entrances::any);
+  return design.balls() ? design::make_light_model(design, library) : design::make_model(design, library);
 }
 
 /// Checks a design of balls. R_A requires an area, which a single ball does not have.

@@ -9,6 +9,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "design/design_part.h"
+#include "design/entrance_of_design.h"
 #include "design/optical_model.h"
 #include "geometry/elements/element_cells.h"
 #include "studies/inspect/inspect.h"
@@ -98,6 +99,7 @@ class FractionQuantity final : public Quantity {
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
     if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::min) return std::nullopt;
+    if (candidate.design().entrance) return std::nullopt;  // derivatives are computed only for plane entrance faces
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (!raytrace::may_be_exact(candidate.analysis().engine)) return std::nullopt;
     request.engine = raytrace::engine_name(raytrace::Engine::exact);
@@ -140,7 +142,8 @@ class FractionQuantity final : public Quantity {
 };
 
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
-  design::require_supported(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
+  design::require_supported(candidate.design(),
+                            {.what = "machining time", .substrates = false, .entrances = true, .wet_backs = true});
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time can be computed only for prisms (element.kind = \"rtp\")");
   return *prism;
@@ -173,10 +176,24 @@ double tool_fit_mm(const Candidate& candidate) {
 }
 
 /// Returns the design of a candidate that is an array of equal elements, flat or on a substrate.
-/// \throw InputError for designs with balls, solids, zones or a curved entrance face
+/// \throw InputError for designs with balls, solids or zones
 const design::Design& elements_of(const Candidate& candidate, const std::string& name) {
+  design::require_supported(candidate.design(), {.what = name, .entrances = true, .wet_backs = true});
+  return candidate.design();
+}
+
+/// Returns the design as elements_of() does. Designs with a curved entrance face are not allowed.
+const design::Design& elements_behind_plane(const Candidate& candidate, const std::string& name) {
   design::require_supported(candidate.design(), {.what = name, .wet_backs = true});
   return candidate.design();
+}
+
+/// Returns the thickness of the part from the lowest point of the back to the highest point of the entrance face.
+double lens_thickness_mm(const Candidate& candidate) {
+  const geometry::Part& part = candidate.part();
+  if (!candidate.design().entrance) return part.element_depth_mm + part.thickness_mm;
+  const geometry::Entrance entrance = design::entrance_of_design(candidate.design(), part);
+  return part.element_depth_mm + geometry::entrance_range(entrance, part.outline).highest_mm;
 }
 
 /// Returns the value of a quantity that needs no ray tracing.
@@ -192,7 +209,7 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
       return candidate.design().elements() && candidate.design().part().substrate
                  ? geometry::element_depth_mm(candidate.part().spec.element, candidate.part().spec.angle_errors)
                  : candidate.part().element_depth_mm;
-    case PlainQuantity::lens_thickness_mm: return candidate.part().element_depth_mm + candidate.part().thickness_mm;
+    case PlainQuantity::lens_thickness_mm: return lens_thickness_mm(candidate);
     case PlainQuantity::facet_area_mm2: return candidate.part().retro_facet_area_mm2;
     case PlainQuantity::effective_area_mm2:
       return static_cast<double>(candidate.part().elements_full) *
@@ -201,7 +218,7 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
     case PlainQuantity::full_element_area_fraction:
       return static_cast<double>(candidate.part().elements_full) *
              full_element_area_mm2(elements_of(candidate, name).part()) / candidate.part().entrance_area_mm2;
-    case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(elements_of(candidate, name));
+    case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(elements_behind_plane(candidate, name));
     case PlainQuantity::tool_fit_mm: return tool_fit_mm(candidate);
     case PlainQuantity::machining_time_h: return machining_time_h(candidate);
     case PlainQuantity::machining_time_per_element_s:

@@ -99,7 +99,7 @@ struct RayStudy::Impl {
       : design(std::move(d)),
         request(std::move(r)),
         library(materials::MaterialLibrary::shipped()),
-        model(design::make_model(design, library, design::Entrances::any)),
+        model(design::make_model(design, library)),
         optics(design, library, ignored),
         placement(placement_of(request.placement, model.part)) {}
 

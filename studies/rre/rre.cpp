@@ -143,8 +143,7 @@ design::OpticalModel model_of(const design::Design& design, const materials::Mat
   const raytrace::EngineFacts facts = engine_facts(design, nullptr, request);
   check_engine(design, facts, request.engine, request);
   check_results(design, facts, request);
-  return design.balls() ? design::make_light_model(design, library)
-                        : design::make_model(design, library, design::Entrances::any);
+  return design.balls() ? design::make_light_model(design, library) : design::make_model(design, library);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/entrance/curved_boundary.h"
 #include "geometry/part/faceted_solid.h"
 #include "raytrace/light/light_setup.h"
 
@@ -15,6 +16,10 @@ namespace {
 constexpr int kGrid = 24;                    // number of entry points along an element
 constexpr std::size_t kPathsEach = 3;        // number of kinds of paths that are shown for each direction of light
 constexpr std::size_t kMaxTriangles = 4000;  // maximum number of triangles of a mesh that is shown
+// Maximum number of triangles of the back of a part with a curved entrance face. Above it, a plane back is shown.
+constexpr std::size_t kMaxBackTriangles = 20'000;
+// Maximum distance between the triangles that are shown and a curved entrance face, as a fraction of the part's size.
+constexpr double kShownError = 1e-4;
 
 geometry::Rectangle element_box(const geometry::Element& element) {
   return geometry::bounding_box(geometry::aperture_outline(element));
@@ -44,6 +49,7 @@ FewElements few_elements(const design::Design& design, double elements) {
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return few;
   small.shape = design::ElementArray{design.part(), {}, {}};
+  if (design.entrance) return few;  // the face belongs to the whole part
   geometry::PartSpec& spec = small.part();
   const geometry::Vec2 size = element_box(spec.element).size();
   if (spec.array.arrangement != geometry::Arrangement::single) {
@@ -69,7 +75,8 @@ FewElements few_elements(const design::Design& design, double elements) {
   return few;
 }
 
-/// Returns the edges between triangles that are not in one plane.
+/// Returns the edges between triangles that are not in one plane. Edges within the entrance face are omitted, because a
+/// curved face is smooth.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;
@@ -84,6 +91,8 @@ std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMe
       const std::uint32_t a = mesh.triangles[t][k];
       const std::uint32_t b = mesh.triangles[t][(k + 1) % 3];
       const auto [it, is_new] = first.try_emplace(std::minmax(a, b), t);
+      if (!is_new && mesh.roles[t] == geometry::FacetRole::entrance && mesh.roles[it->second] == mesh.roles[t])
+        continue;
       if (!is_new && normal(t).dot(normal(it->second)) < 1.0 - 1e-6) edges.push_back({a, b});
     }
   return edges;
@@ -106,6 +115,33 @@ geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
     mesh.roles.push_back(geometry::FacetRole::entrance);
   }
   return mesh;
+}
+
+/// Returns a part with a plane back.
+geometry::Part with_plane_back(const geometry::Part& part) {
+  geometry::SurfacePatch back;
+  for (const geometry::Vec2& p : part.outline) back.vertices.emplace_back(p.x(), p.y(), 0.0);
+  for (std::uint32_t k = 1; k + 1 < part.outline.size(); ++k) {
+    back.triangles.push_back({0, k + 1, k});
+    back.triangle_facet.push_back(0);
+  }
+  geometry::PatchFacet facet;
+  facet.role = geometry::FacetRole::flat_back;
+  back.facets.push_back(facet);
+  geometry::Part plane = part;
+  plane.patches = {back};
+  plane.placements = {{}};
+  return plane;
+}
+
+/// Returns the boundary of a part with a curved entrance face.
+/// \param remarks receives differences from the design
+geometry::BoundaryMesh boundary_of_curved_part(const design::OpticalModel& model, std::vector<std::string>& remarks) {
+  const geometry::Part& part = model.part;
+  const double error_mm = kShownError * geometry::bounding_box(part.outline).size().maxCoeff();
+  const bool is_small = part.placements.size() == 1 && part.patches[0].triangles.size() <= kMaxBackTriangles;
+  if (!is_small) remarks.push_back("the elements are not shown, because there are too many");
+  return geometry::curved_boundary(is_small ? part : with_plane_back(part), *model.entrance, error_mm).mesh;
 }
 
 /// Sequence of events along a path and of the facets on which they happen. Paths with equal sequences are of one kind.
@@ -132,8 +168,8 @@ DesignExcerpt::DesignExcerpt(const design::Design& design, const materials::Mate
   model_ = design::make_model(few.design, library);
   remarks_ = std::move(few.remarks);
   if (design_thickness_mm_ == 0.0) design_thickness_mm_ = model_.part.thickness_mm;
-  mesh_ = boundary_of_part(model_.part);
-  if (mesh_.triangles.size() > kMaxTriangles) {
+  mesh_ = model_.entrance ? boundary_of_curved_part(model_, remarks_) : boundary_of_part(model_.part);
+  if (!model_.entrance && mesh_.triangles.size() > kMaxTriangles) {
     mesh_.triangles.resize(kMaxTriangles);
     mesh_.roles.resize(kMaxTriangles);
     remarks_.push_back("only a part of the mesh is shown");
@@ -141,6 +177,7 @@ DesignExcerpt::DesignExcerpt(const design::Design& design, const materials::Mate
   edges_ = sharp_edges(mesh_);
   centre_mm_ = geometry::bounding_box(model_.part.outline).centre();
   surface_.emplace(model_.part, centre_mm_);
+  if (model_.entrance) entrance_face_ = raytrace::make_entrance_face(*model_.entrance, model_.part, centre_mm_);
   if (few.is_cut && !design.part().substrate) find_lattice(design.part(), few.design.part());
 }
 
@@ -167,7 +204,7 @@ geometry::Vec2 DesignExcerpt::entry_of(const SceneLight& light, const geometry::
 raytrace::LightPath DesignExcerpt::path(const SceneLight& light, const geometry::Vec2& entry_mm) const {
   const auto first_hit = [this](const raytrace::SurfaceRay& ray) { return surface_->first_hit(ray); };
   return raytrace::strongest_path(model_.part, first_hit, centre_mm_, model_.optics, illumination_of(light), cone_deg_,
-                                  entry_mm);
+                                  entry_mm, entrance_face_.get());
 }
 
 std::vector<ScenePath> DesignExcerpt::typical_paths(const SceneLight& light) const {

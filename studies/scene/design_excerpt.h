@@ -3,12 +3,14 @@
 // Small number of elements of a design for display, and light paths through them.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "design/optical_model.h"
 #include "geometry/part/closed_boundary.h"
+#include "raytrace/faces/entrance_face.h"
 #include "raytrace/faces/exact_surface.h"
 #include "raytrace/paths/light_path.h"
 
@@ -35,7 +37,8 @@ inline constexpr double kSceneElements = 4.0;
 inline constexpr double kLiveElements = 6.0;
 
 /// A few elements of a design for display. Their plate is not thicker than the elements are wide. Rough facets are
-/// shown as smooth.
+/// shown as smooth. A part with a curved entrance face is displayed as a whole. The displayed face consists of
+/// triangles, but light paths are refracted at the exact face.
 class DesignExcerpt {
  public:
   /// \param elements maximum number of elements along a side of an array
@@ -81,6 +84,7 @@ class DesignExcerpt {
   geometry::Vec2 centre_mm_ = geometry::Vec2::Zero();
   std::optional<Lattice> lattice_;  ///< none if the excerpt is the whole part, or if the part is not periodic
   std::optional<raytrace::ExactSurface> surface_;
+  std::unique_ptr<const raytrace::EntranceFace> entrance_face_;  ///< null if the entrance face is plane
 };
 
 }  // namespace retrace::studies

@@ -7,7 +7,9 @@
 
 #include "core/error.h"
 #include "design/design_part.h"
+#include "design/entrance_of_design.h"
 #include "design/part_of_design.h"
+#include "geometry/entrance/curved_boundary.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/mould_boundary.h"
@@ -67,6 +69,20 @@ void measure(Solid& solid) {
   solid.is_manifold = geometry::is_closed_manifold(solid.mesh);
 }
 
+/// Checks that the request agrees with the entrance face of the design.
+void check_entrance(const design::Design& design, SolidKind what, const SolidRequest& request) {
+  if (!design.entrance) {
+    if (request.surface_error_mm)
+      throw InputError(Field{"surface_error_mm"}, "only allowed for a design with an [entrance_surface]");
+    return;
+  }
+  if (what == SolidKind::element)
+    throw InputError(design.where(design.entrance_key()),
+                     reference({"what"}) +
+                         " element is not available with an [entrance_surface], which covers the "
+                         "whole part: export the array");
+}
+
 void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
   if (!solid.is_manifold)
@@ -96,17 +112,35 @@ geometry::Part part_to_write(const design::Design& design, SolidKind what) {
   return part;
 }
 
+/// Sets the boundary of a part, with the curved entrance face of the design if it has one.
+void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request) {
+  solid.elements_full = part.elements_full;
+  solid.elements_partial = part.elements_partial;
+  if (!solid.design.entrance) {
+    solid.mesh = geometry::closed_boundary(part);
+    return;
+  }
+  const geometry::Entrance entrance = design::entrance_of_design(solid.design, part);
+  try {
+    geometry::CurvedBoundary boundary =
+        geometry::curved_boundary(part, entrance, request.surface_error_mm.value_or(kSurfaceErrorMm));
+    solid.mesh = std::move(boundary.mesh);
+    solid.surface_error_mm = boundary.entrance_error_mm;
+    if (!geometry::open_edges(solid.mesh).empty())
+      throw InputError("cannot be joined to the sides of the mesh of the part without gaps");
+  } catch (const InputError& error) {
+    throw InputError(solid.design.where(solid.design.entrance_key()), error.what());
+  }
+}
+
 /// Returns the solid with its mesh, for a design that is read from a mesh file or consists of zones. Repairs of the
 /// mesh are reported in the warnings.
-Solid solid_of_mesh(Solid solid) {
+Solid solid_of_mesh(Solid solid, const SolidRequest& request) {
   if (solid.what != SolidKind::array)
     design::require_supported(
         solid.design, {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
-  if (solid.design.zoned()) {
-    const geometry::Part part = design::part_of_design(solid.design, &solid.warnings);
-    solid.elements_full = part.elements_full;
-    solid.elements_partial = part.elements_partial;
-    solid.mesh = geometry::closed_boundary(part);
+  if (solid.design.zoned() || solid.design.entrance) {
+    set_boundary(solid, design::part_of_design(solid.design, &solid.warnings), request);
   } else {
     solid.mesh = geometry::boundary_of(design::mesh_of_design(solid.design, &solid.warnings));
   }
@@ -123,19 +157,20 @@ std::string name_of(SolidKind kind) {
 
 Solid make_solid(const design::Design& design, const SolidRequest& request) {
   requests::check(request);
-  design::require_supported(design, {.what = "retrace export", .solids = true, .wet_backs = true});
+  design::require_supported(design, {.what = "retrace export", .solids = true, .entrances = true, .wet_backs = true});
   Solid solid;
   solid.design = design;
   solid.what = kind_of(request.what);
-  if (!design.elements()) return solid_of_mesh(std::move(solid));
+  check_entrance(design, solid.what, request);
+  if (!design.elements()) return solid_of_mesh(std::move(solid), request);
   const geometry::Part part = part_to_write(design, solid.what);
-  solid.elements_full = part.elements_full;
-  solid.elements_partial = part.elements_partial;
   if (solid.what == SolidKind::mould) {
+    solid.elements_full = part.elements_full;
+    solid.elements_partial = part.elements_partial;
     solid.block_mm = request.block_mm.value_or(part.thickness_mm);
     solid.mesh = geometry::mould_boundary(part, solid.block_mm);
   } else {
-    solid.mesh = geometry::closed_boundary(part);
+    set_boundary(solid, part, request);
   }
   measure(solid);
   add_warnings(solid);

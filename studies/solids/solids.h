@@ -3,6 +3,7 @@
 // Elements, parts and moulds as closed solids for CAD and other programs. `retrace export` runs this study.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/warning.h"
@@ -29,6 +30,9 @@ struct Solid {
   design::Design design;
   SolidKind what = SolidKind::array;
   double block_mm = 0.0;  ///< thickness of a mould below its deepest point; 0 for other solids
+  /// Largest distance along z between the triangles of a curved entrance face and the exact surface. Not set for a
+  /// plane face and for moulds.
+  std::optional<double> surface_error_mm;
   geometry::BoundaryMesh mesh;
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;
@@ -40,10 +44,13 @@ struct Solid {
   Warnings warnings;
 };
 
+/// Distance along z between the triangles of an exact entrance surface and the surface that is allowed by default.
+inline constexpr double kSurfaceErrorMm = 0.001;
+
 /// Builds the closed boundary of the requested solid. Its facets are plane and smooth: only the angle errors and the
-/// edges of the design's table [surface] are used.
-/// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, or
-/// if the solid has more than kMaxSolidElements elements
+/// edges of the design's table [surface] are used. A curved entrance face consists of triangles.
+/// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, if
+/// the solid has more than kMaxSolidElements elements, or if one element is requested behind a curved entrance face
 Solid make_solid(const design::Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -3,10 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "tests/app/program.h"
 
@@ -16,6 +21,8 @@ namespace {
 const std::string kTool = "[tool]\nnose_radius_mm = 0.05\nclearance_deg = 40\n";
 const std::string kBody = "[body]\nthickness_mm = 1.2\nrefractive_index = 1.4917\n";
 const std::string kPlate = "[part]\nplate_mm = [1, 0.8]\n";
+const std::string kPrisms =
+    "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
 const std::string kFront = "[entrance_surface]\nturned_part = \"lens.toml\"\n";
 
 std::string turned(const std::string& base, const std::string& more = {}, double radius_mm = 0.7,
@@ -56,10 +63,8 @@ double total(const Json& point) {
 
 TEST_F(Entrance, FlatTurnedFrontIsThePlaneEntranceFace) {
   folder_.write("lens.toml", turned(kFlat));
-  const std::string prisms =
-      "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
   const std::string light = "[light]\npolarisation = \"right_circular\"\n";
-  for (const std::string& back : {kPlate, prisms}) {
+  for (const std::string& back : {kPlate, kPrisms}) {
     const Arguments how = {"--engine", "embree", "--samples", "4096", "--incidence=0,25", "--azimuth=20"};
     const Json plane = rre(back + kBody + light, how);
     const Json front = rre(back + kFront + kBody + light, how);
@@ -241,19 +246,18 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
   EXPECT_NEAR(json["entrance_surface"]["steepest_deg"].get<double>(), steepest, 1e-6);
   EXPECT_EQ(json["design"]["part"]["plate_mm"], Json::array({1.0, 0.8}));
   EXPECT_NE(folder_.read("out/entrance_surface.svg").find("<svg"), std::string::npos);
-  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg",
-                                                       "out/inspect.json", "out/plan.svg", "out/view.png"}));
+  EXPECT_EQ(folder_.names(),
+            (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg", "out/inspect.json",
+                                      "out/plan.svg", "out/section.svg", "out/view.png"}));
   EXPECT_NE(folder_.read("out/plan.svg").find(">x length 1</text>"), std::string::npos);
 }
 
-// A report does not show the curved entrance surface that was traced. It must warn about this instead of drawing a
-// plane entrance face.
-TEST_F(Entrance, ReportSaysThatItIsNotShown) {
+TEST_F(Entrance, ReportShowsIt) {
   folder_.write("lens.toml", turned(kCap));
-  rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
+  rre(kPrisms + kFront + kBody, {"--samples", "64", "-o", "out"});
   const Outcome outcome = retrace(folder_, {"report", "out", "--read", "lens.toml"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;
+  EXPECT_TRUE(warnings_of(outcome).empty()) << outcome.err;
 }
 
 // No light is lost in a plate with prisms behind the freeform lenslets of an example of `retrace turn`. The lenslets
@@ -295,20 +299,153 @@ TEST_F(Entrance, PhotometryTakesIt) {
 
 TEST_F(Entrance, OthersRefuseItByName) {
   folder_.write("lens.toml", turned(kFlat));
-  const std::string prisms =
-      "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
-  const std::string design = prisms + kFront + kBody;
+  const std::string design = kPrisms + kFront + kBody;
   const std::string where = "design.toml:9: entrance_surface.turned_part";
   EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=exact"}), "--engine");
   EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
     EXPECT_EQ(refusal(design, {"rre", "design.toml", option, "-o", "out"}), where);
-  for (const std::string kind : {"--detector", "--camera"})
-    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
-  EXPECT_EQ(refusal(design, {"image", "design.toml", "--road", "-o", "out"}), where);
-  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--detector", "--engine=exact", "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--camera", "--eye-mm=0.1,0.1,1.1", "-o", "out"}), "--eye-mm");
+  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl", "--what=element"}), where);
+  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.json"}), where);
+  EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl", "--surface-error-mm=0"}), "--surface-error-mm");
+  EXPECT_EQ(refusal(kPrisms + kBody, {"export", "design.toml", "out.stl", "--surface-error-mm=0.1"}),
+            "--surface-error-mm");
   EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}), where);
   EXPECT_EQ(refusal(design, {"roughness", "design.toml", "-o", "out"}), where);
+}
+
+/// Closed surface that the test reads from a binary STL file.
+struct ReadSolid {
+  std::size_t triangles = 0;
+  std::size_t open_edges = 0;  ///< edges that are not traversed one time in each direction
+  double volume_mm3 = 0.0;
+};
+
+/// Reads a binary STL file without the reader of the program. Vertices are equal if their coordinates are.
+ReadSolid read_binary_stl(const std::string& text) {
+  using Corner = std::array<float, 3>;
+  ReadSolid solid;
+  std::uint32_t count = 0;
+  std::memcpy(&count, text.data() + 80, 4);
+  solid.triangles = count;
+  EXPECT_EQ(text.size(), 84U + 50U * count);
+  std::map<std::pair<Corner, Corner>, int> traversals;
+  for (std::size_t t = 0; t < count; ++t) {
+    std::array<Corner, 3> corners;
+    std::memcpy(corners.data(), text.data() + 84 + 50 * t + 12, 36);
+    const auto& [a, b, c] = corners;
+    const auto minor = [&](std::size_t i, std::size_t j) {
+      return static_cast<double>(b[i]) * c[j] - static_cast<double>(b[j]) * c[i];
+    };
+    solid.volume_mm3 += (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)) / 6.0;
+    for (std::size_t k = 0; k < 3; ++k) ++traversals[{corners[k], corners[(k + 1) % 3]}];
+  }
+  for (const auto& [edge, count] : traversals)
+    if (count != 1 || !traversals.contains({edge.second, edge.first})) ++solid.open_edges;
+  return solid;
+}
+
+// The volume is that of the prisms and that below the sphere: the integral of the height over the rectangle.
+TEST_F(Entrance, ExportsAreClosedSolids) {
+  folder_.write("lens.toml", turned(kCap));
+  folder_.write("design.toml", kPrisms + kFront + kBody);
+  double below_sphere = 0.0;
+  constexpr int kCells = 400;
+  for (int j = 0; j < kCells; ++j)
+    for (int i = 0; i < kCells; ++i) {
+      const double x = (i + 0.5) / kCells - 0.5;
+      const double y = 0.8 * ((j + 0.5) / kCells - 0.5);
+      below_sphere += 0.8 / (kCells * kCells) * (1.2 - 3.0 + std::sqrt(9.0 - x * x - y * y));
+    }
+  const double volume = below_sphere + 16.0 * 0.25 * 0.25 * 0.25 * 0.2;
+  for (const double error_mm : {1e-3, 1e-4}) {
+    const Json json =
+        retrace_json(folder_, {"export", "design.toml", "solid.stl", "--surface-error-mm", std::to_string(error_mm)});
+    EXPECT_TRUE(json["is_manifold"].get<bool>());
+    EXPECT_LE(json["surface_error_mm"].get<double>(), error_mm);
+    EXPECT_GT(json["surface_error_mm"].get<double>(), 0.05 * error_mm);
+    EXPECT_NEAR(json["volume_mm3"].get<double>(), volume, 0.8 * error_mm);
+    EXPECT_NEAR(json["upper_mm"][2].get<double>(), 1.2, 1e-9);
+    const ReadSolid solid = read_binary_stl(folder_.read("solid.stl"));
+    EXPECT_EQ(solid.open_edges, 0U);
+    EXPECT_EQ(solid.triangles, json["triangles"].get<std::size_t>());
+    EXPECT_NEAR(solid.volume_mm3, json["volume_mm3"].get<double>(), 1e-6);
+  }
+  for (const std::string file : {"solid.obj", "solid.glb", "solid.step"})
+    EXPECT_EQ(retrace(folder_, {"export", "design.toml", file}).code, 0) << file;
+  // The mould fits the back, which the entrance surface does not change.
+  const auto mould = [&] {
+    return retrace_json(folder_, {"export", "design.toml", "--what=mould"})["volume_mm3"].get<double>();
+  };
+  const double behind = mould();
+  folder_.write("design.toml", kPrisms + kBody);
+  EXPECT_EQ(mould(), behind);
+}
+
+// A mesh of the surface is exported with its own triangles. The mesh that `retrace turn` writes is the counterpart.
+TEST_F(Entrance, MeshesAreExportedAsTheyAre) {
+  folder_.write("lens.toml", turned(kCap, {}, 0.7, "feed_um = 40\nspindle_rpm = 60\npoints_per_turn = 180\n") +
+                                 "[inspect]\nmesh_thickness_mm = 0.3\nmesh_rings = 40\n");
+  ASSERT_EQ(retrace(folder_, {"turn", "lens.toml", "-o", "out"}).code, 0);
+  folder_.write("design.toml",
+                kPlate + "[entrance_surface]\nmesh = \"out/machined.stl\"\nmesh_side = \"bottom\"\n" + kBody);
+  const Json json = retrace_json(folder_, {"export", "design.toml", "solid.stl"});
+  EXPECT_TRUE(json["is_manifold"].get<bool>());
+  EXPECT_EQ(json["surface_error_mm"].get<double>(), 0.0);
+  const ReadSolid solid = read_binary_stl(folder_.read("solid.stl"));
+  EXPECT_EQ(solid.open_edges, 0U);
+  folder_.write("design.toml", kPlate + kFront + kBody);
+  const Json exact = retrace_json(folder_, {"export", "design.toml"});
+  EXPECT_NEAR(json["volume_mm3"].get<double>(), exact["volume_mm3"].get<double>(), 1e-3);
+}
+
+TEST_F(Entrance, ImagesOfAPlaneSurfaceAreThoseOfThePlaneFace) {
+  folder_.write("lens.toml", turned(kFlat));
+  folder_.write("plane.toml", kPrisms + kBody);
+  folder_.write("front.toml", kPrisms + kFront + kBody);
+  const auto picture = [&](const std::string& design, const std::string& seed) {
+    return retrace_json(folder_, {"image", design, "--camera", "--no-diffraction", "--pixels=20x16", "--passes=24",
+                                  "--ambient-lx=5", "--lamp-arcmin=60", "--h-deg=5", "--seed=" + seed});
+  };
+  const Json plane = picture("plane.toml", "1");
+  const Json front = picture("front.toml", "2");
+  EXPECT_EQ(front["engine"], "embree");
+  EXPECT_FALSE(front["has_diffraction"].get<bool>());
+  EXPECT_EQ(front["eye_mm"], plane["eye_mm"]);
+  const double mean = plane["part_luminance_cd_per_m2"].get<double>();
+  const double error =
+      std::hypot(plane["part_std_error_cd_per_m2"].get<double>(), front["part_std_error_cd_per_m2"].get<double>());
+  EXPECT_GT(mean, 0.0);
+  EXPECT_NEAR(front["part_luminance_cd_per_m2"].get<double>(), mean, 4.5 * error);
+  const auto map = [&](const std::string& design) {
+    return retrace_json(folder_, {"image", design, "--detector", "--engine=montecarlo", "--pixels=20",
+                                  "--samples=65536", "--incidence=10", "--azimuth=20"});
+  };
+  const Json maps = map("front.toml");
+  EXPECT_NEAR(maps["rre"].get<double>(), map("plane.toml")["rre"].get<double>(), 1e-9);
+  EXPECT_EQ(maps["engine"], "embree");
+  const Json road = retrace_json(folder_, {"image", "front.toml", "--road", "--distance-m=30"});
+  EXPECT_TRUE(road["complete"].get<bool>());
+  EXPECT_EQ(road["engine"], "embree");
+}
+
+TEST_F(Entrance, StudiesTakeIt) {
+  folder_.write("lens.toml", turned(kCap));
+  folder_.write("design.toml", kPrisms + kFront + kBody + "[light]\nwavelength_nm = 550\n");
+  const std::string study =
+      "design = \"design.toml\"\n[analysis]\nrays = 2048\n[[parameter]]\nkey = \"body.thickness_mm\"\n"
+      "values = [1.2, 1.5]\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[[quantity]]\nkind = \"effective_area_mm2\"\n";
+  folder_.write("study.toml", study + "[[quantity]]\nkind = \"rre\"\n");
+  const Outcome outcome = retrace(folder_, {"sweep", "study.toml", "-o", "out"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string table = folder_.read("out/sweep.csv");
+  EXPECT_NE(table.find("1.325"), std::string::npos) << table;  // depth of the prisms + height of the vertex
+  EXPECT_NE(table.find("1.625"), std::string::npos) << table;
+  folder_.write("study.toml", study + "[[quantity]]\nkind = \"tir_limit_deg\"\n");
+  EXPECT_EQ(refused_at(retrace(folder_, {"sweep", "study.toml", "-o", "other"})),
+            "design.toml:9: entrance_surface.turned_part");
 }
 
 TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {

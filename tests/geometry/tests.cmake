@@ -9,5 +9,6 @@ retrace_test(raytrace_tests
   LIBRARIES retrace::geometry retrace::geometry_check)
 
 retrace_test(raytrace_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/entrance_mesh_test.cpp ${CMAKE_CURRENT_LIST_DIR}/entrance_shape_test.cpp
-  LIBRARIES retrace::geometry)
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/curved_boundary_test.cpp ${CMAKE_CURRENT_LIST_DIR}/entrance_mesh_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/entrance_shape_test.cpp
+  LIBRARIES retrace::geometry retrace::geometry_check)

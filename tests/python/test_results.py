@@ -328,6 +328,22 @@ class Designs(unittest.TestCase):
         del made
         self.assertGreater(vertices.max(), 0)  # the array stays valid
 
+    def test_solids_with_curved_entrance_surfaces(self):
+        design = program.example("fronts/cats_eye_lenslets.toml")
+        vertices, faces, labels = made = rt.mesh(design, surface_error_mm=0.002)
+        self.assertTrue(made.is_manifold)
+        entrance = vertices[faces[labels == rt.FaceKind.ENTRANCE]]
+        # The lenslets are 0.0225 mm high. The plane between them is 3.01126 mm above the back.
+        self.assertAlmostEqual(entrance[..., 2].min(), 3.01126, 9)
+        self.assertAlmostEqual(entrance[..., 2].max(), 3.01126 + 0.0225, delta=0.002)
+        fine = rt.mesh(design, surface_error_mm=0.0005)
+        self.assertAlmostEqual(made.volume_mm3, fine.volume_mm3, delta=4 * 0.0025)
+        self.assertGreater(len(fine.faces), len(faces))
+        maps = rt.image.detector(design, samples=4096, pixels=20)
+        self.assertEqual(maps.engine, "embree")
+        with self.assertRaises(rt.InputError):
+            rt.mesh(program.example("rtp_brick_5mm.toml"), surface_error_mm=0.1)
+
     def test_as_machined(self):
         job = rt.job(program.example("rtp_brick_5mm.toml"), tool_width_mm=1)
         left = rt.verify(job, rt.fabricate(job)).as_machined

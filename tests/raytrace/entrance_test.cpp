@@ -14,6 +14,8 @@
 #include "geometry/entrance/entrance_mesh.h"
 #include "geometry/part/plate.h"
 #include "raytrace/faces/entrance_face.h"
+#include "raytrace/faces/exact_surface.h"
+#include "raytrace/paths/light_path.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "raytrace/paths/path_tracer.h"
 #include "tests/support/designs.h"
@@ -490,6 +492,47 @@ TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
   TriangleMesh twice = box_mesh({1.0, 1.0}, 0.5);
   twice.triangles.push_back(twice.triangles[2]);
   EXPECT_EQ(message(twice, MeshSide::top), "refused");
+}
+
+// Paths for drawings are refracted at the exact surface, like traced paths. All light of mirrors behind a lossless
+// surface takes one path.
+TEST(Entrance, DrawnPathsAreTracedPaths) {
+  const Part part = build_part(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 4.0, 1.0));
+  const Vec2 centre = bounding_box(part.outline).centre();
+  const Entrance sphere = sphere_entrance(12.0, 1.5, centre);
+  const OneRay one(part, sphere, centre);
+  const ExactSurface surface(part, centre);
+  const HitFinder first_hit = [&](const SurfaceRay& ray) { return surface.first_hit(ray); };
+  for (const double incidence_deg : {0.0, 12.0})
+    for (const Vec2& aside : {Vec2(0.11, 0.07), Vec2(-0.6, 0.35), Vec2(0.83, -0.58)}) {
+      const Illumination light = from(incidence_deg, 40.0);
+      const LightPath path = strongest_path(part, first_hit, centre, ideal(), light, 0.5, centre + aside, &one.face());
+      const Exits exits = one.follow(ideal(), light, aside);
+      ASSERT_EQ(exits.all.size(), 1U);
+      ASSERT_EQ(path.steps.back().event, PathEvent::leaves);
+      const std::size_t last = path.points_mm.size() - 1;
+      const Vec3 direction = (path.points_mm[last] - path.points_mm[last - 1]).normalized();
+      EXPECT_LT((direction - exits.all[0].direction).norm(), 1e-9);
+      EXPECT_LT((path.points_mm[last - 1] - exits.all[0].position - Vec3(centre.x(), centre.y(), 0.0)).norm(), 1e-9);
+    }
+}
+
+TEST(Entrance, DrawnPathsBehindAPlaneSurfaceAreThoseOfThePlaneFace) {
+  const Part part = build_part(finite(RtpElement{0.5, 0.4}, Arrangement::offset, 2.3, 1.9, 0.7));
+  const Vec2 centre = bounding_box(part.outline).centre();
+  const ExactSurface surface(part, centre);
+  const HitFinder first_hit = [&](const SurfaceRay& ray) { return surface.first_hit(ray); };
+  const auto face = make_entrance_face(plane_entrance(0.7), part, centre);
+  for (const double incidence_deg : {0.0, 25.0, 60.0})
+    for (const Vec2& at : {Vec2(0.31, 0.27), Vec2(1.2, 0.9), Vec2(2.1, 1.6)}) {
+      const Illumination light = from(incidence_deg, 70.0);
+      const LightPath plane = strongest_path(part, first_hit, centre, pmma(), light, 0.5, at);
+      const LightPath curved = strongest_path(part, first_hit, centre, pmma(), light, 0.5, at, face.get());
+      ASSERT_EQ(plane.points_mm.size(), curved.points_mm.size());
+      for (std::size_t k = 0; k < plane.points_mm.size(); ++k)
+        EXPECT_LT((plane.points_mm[k] - curved.points_mm[k]).norm(), 1e-9) << k;
+      EXPECT_NEAR(plane.power, curved.power, 1e-12);
+    }
 }
 
 }  // namespace

@@ -50,8 +50,7 @@ TEST(LightSymmetry, OrientedPropertiesBreakTheSymmetryOfThePart) {
     one.change(changed);
     design::Design readable = changed;  // the file of a height map does not exist
     if (std::holds_alternative<design::HeightMapTexture>(changed.surface.texture)) readable = design;
-    const design::OpticalModel model =
-        design::make_model(readable, materials::MaterialLibrary::shipped(), design::Entrances::any);
+    const design::OpticalModel model = design::make_model(readable, materials::MaterialLibrary::shipped());
     EXPECT_EQ(design::light_symmetries(changed, model).size(), one.maps) << one.name;
     const bool is_model_of_change = one.name != "height map" && one.name != "scratches of one azimuth";
     if (is_model_of_change) {

@@ -1,7 +1,8 @@
-// Replaces entrance surfaces of turned parts and meshes by a function that reports an error. Such surfaces are read
-// from files, which the live page does not have.
+// Replaces entrance surfaces of turned parts and meshes by functions that report an error. Such surfaces are read from
+// files, which the live page does not have. Meshes also need Embree.
 #include "design/entrance_of_design.h"
 #include "live/engine/stand_ins/absent.h"
+#include "raytrace/faces/height_field.h"
 
 namespace retrace::design {
 
@@ -10,3 +11,14 @@ geometry::Entrance entrance_of_design(const Design&, const geometry::Part&) {
 }
 
 }  // namespace retrace::design
+
+namespace retrace::raytrace {
+
+std::unique_ptr<const EntranceFace> make_entrance_face(const geometry::Entrance& entrance_face,
+                                                       const geometry::Part& part, const Vec2& centre_mm) {
+  if (const auto* const surface = std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&entrance_face))
+    return std::make_unique<HeightField>(*surface, part.outline, centre_mm);
+  live::fail_as_absent("no entrance surfaces that are meshes");
+}
+
+}  // namespace retrace::raytrace

@@ -84,6 +84,7 @@ std::string solid_json(const Solid& solid, const std::string& file) {
   Json json = {{"design", design::to_json(solid.design)}, {"what", name_of(solid.what)}};
   if (!file.empty()) json["file"] = file;
   if (solid.what == SolidKind::mould) json["block_mm"] = solid.block_mm;
+  if (solid.surface_error_mm) json["surface_error_mm"] = *solid.surface_error_mm;
   json.update({{"elements_full", solid.elements_full},
                {"elements_partial", solid.elements_partial},
                {"volume_mm3", solid.volume_mm3},
@@ -104,6 +105,9 @@ std::string solid_table(const Solid& solid) {
   text += fmt::format("  volume     {} mm3\n", fixed(solid.volume_mm3, 6));
   text += fmt::format("  surface    {} mm2\n", fixed(solid.area_mm2, 6));
   text += fmt::format("  triangles  {}\n", solid.mesh.triangles.size());
+  if (solid.surface_error_mm)
+    text +=
+        fmt::format("  entrance   triangles within {} mm of the exact surface\n", fixed(*solid.surface_error_mm, 6));
   return text;
 }
 

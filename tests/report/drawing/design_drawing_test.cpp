@@ -207,6 +207,23 @@ TEST(DesignDrawing, SectionsHaveTheirAreas) {
   EXPECT_NEAR(area_of(row->outline_mm), 1.2 + 2.0 * 0.25 * 0.25, 1e-6);
 }
 
+// The area between the prisms and a parabola of x, which is the integral of its height plus the triangles of the
+// prisms.
+TEST(DesignDrawing, SectionsEndAtACurvedEntranceFace) {
+  const design::Design design = design::parse_design(prisms("x_length_mm = 6\ny_length_mm = 4\n"), "d.toml");
+  const Part part = design::part_of(design);
+  const auto height = [](const Vec2& p) { return 1.5 - 0.05 * std::pow(p.x() - 3.0, 2.0); };
+  const DesignDrawing drawing = draw_curved_design(design, part, height);
+  ASSERT_TRUE(drawing.section);
+  const SectionView& view = drawing.section->view;
+  EXPECT_FALSE(drawing.section->is_continued);
+  EXPECT_NEAR(area_of(view.outline_mm), 6.0 * 1.5 - 0.05 * 2.0 * 9.0 + 12.0 * 0.25 * 0.25, 1e-4);
+  EXPECT_NEAR(value_of(drawing.section->dimensions, "height at edge"), 1.05, 1e-5);
+  EXPECT_NEAR(value_of(drawing.section->dimensions, "highest point"), 1.5, 1e-9);
+  EXPECT_EQ(drawing.plan.front().section_y_mm, view.y_mm);
+  EXPECT_FALSE(report::section_svg(drawing).empty());
+}
+
 TEST(DesignDrawing, MasksAreShown) {
   // The table of planes acts as a mask here: elements that are not in the table are flat.
   design::Design design = design::parse_design(prisms("x_length_mm = 2\ny_length_mm = 1\n"), "d.toml");

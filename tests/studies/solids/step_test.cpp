@@ -5,11 +5,13 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "geometry/entrance/curved_boundary.h"
 #include "geometry/io/step_file.h"
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/welded_part.h"
 #include "tests/studies/solids/solid_specs.h"
 #include "tests/studies/solids/step_reader.h"
+#include "tests/support/entrance_surfaces.h"
 
 // Tests of STEP files. OpenCASCADE must read them back as one valid solid without free edges, whose volume equals a
 // closed form.
@@ -67,6 +69,15 @@ TEST(Step, BrickRowsWithCutElementsHaveTheirVolume) {
   // prism at each end.
   const Part part = build_part(array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 3.0));
   expect_solid(closed_boundary(part), 9.0 * 0.7 + 36.0 * test::prism_volume_mm3(0.5, 0.5));
+}
+
+// The volume below an inclined plane is the area times the height at the centre.
+TEST(Step, SolidsWithCurvedEntranceSurfacesAreValid) {
+  const Part part = build_welded_part(array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 3.0));
+  expect_solid(curved_boundary(part, testing::plane_entrance(0.7, 0.05, 0.02), 1e-3).mesh,
+               9.0 * (0.7 + 0.05 * 1.5 + 0.02 * 1.5) + 36.0 * test::prism_volume_mm3(0.5, 0.5));
+  const BoundaryMesh mesh = curved_boundary(part, testing::sphere_entrance(8.0, 0.9, {1.5, 1.4}), 1e-3).mesh;
+  expect_solid(mesh, volume_mm3(mesh));
 }
 
 TEST(Step, CubeCornerArraysAreSolids) {

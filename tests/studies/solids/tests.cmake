@@ -8,5 +8,5 @@ retrace_test(command_tests
 if(RETRACE_WITH_OPENCASCADE)
   retrace_test(step_test
     SOURCES studies/solids/step_test.cpp studies/solids/step_reader.cpp
-    LIBRARIES retrace::geometry retrace::geometry_io RetraceOpenCASCADE TKShHealing)
+    LIBRARIES retrace::geometry retrace::geometry_io RetraceOpenCASCADE TKShHealing fmt::fmt)
 endif()
