@@ -9,17 +9,17 @@ namespace retrace::geometry {
 namespace {
 
 // Two corners of an element count as one point if their distance is below this fraction of the element's size.
-constexpr double kSamePoint = 1e-9;
+constexpr double kSameCorner = 1e-9;
 // Minimum distance between facets of an excerpt and its entrance face, as a fraction of the element's size.
-constexpr double kMinRoom = 1e-6;
+constexpr double kMinFacetRoom = 1e-6;
 // Margin around all facets of an excerpt, as a fraction of the element's size. It keeps the outline off the facets.
-constexpr double kMargin = 0.25;
+constexpr double kExcerptMargin = 0.25;
 
 Vec3 shift_of(const Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
 }
 
-Vec3 corner(const SurfacePatch& patch, const PatchFacet& facet, std::uint32_t k) {
+Vec3 corner_of(const SurfacePatch& patch, const PatchFacet& facet, std::uint32_t k) {
   return patch.vertices[patch.corners[facet.first_corner + k]];
 }
 
@@ -39,7 +39,7 @@ void count_corner(std::vector<CountedCorner>& corners, const Vec3& at_mm, double
 }
 
 /// Sets the points of an element from its facets. Returns false if it has no retro facet.
-bool measure(const Part& part, PlacedElement& element) {
+bool find_points(const Part& part, PlacedElement& element) {
   const Placement& placement = part.placements[element.placement];
   const SurfacePatch& patch = part.patches[placement.patch];
   std::vector<CountedCorner> corners;
@@ -47,7 +47,7 @@ bool measure(const Part& part, PlacedElement& element) {
     for (std::uint32_t f = 0; f < patch.cells[c].facet_count; ++f) {
       const PatchFacet& facet = patch.facets[patch.cells[c].first_facet + f];
       for (std::uint32_t k = 0; k < facet.corner_count; ++k)
-        count_corner(corners, corner(patch, facet, k) + shift_of(placement), kSamePoint * part.size_mm,
+        count_corner(corners, corner_of(patch, facet, k) + shift_of(placement), kSameCorner * part.size_mm,
                      facet.role == FacetRole::retro_facet);
     }
   int most = 0;
@@ -69,9 +69,9 @@ bool measure(const Part& part, PlacedElement& element) {
 }
 
 /// Collects facets in the frame of an excerpt.
-class Builder {
+class ExcerptBuilder {
  public:
-  Builder(const Part& part, const Eigen::Isometry3d& frame_from_part, double thickness_mm)
+  ExcerptBuilder(const Part& part, const Eigen::Isometry3d& frame_from_part, double thickness_mm)
       : part_(part), frame_from_part_(frame_from_part), thickness_mm_(thickness_mm) {}
 
   /// Adds the cells of an element, or a single cell that belongs to no element. They are omitted if they reach the
@@ -83,7 +83,8 @@ class Builder {
       for (std::uint32_t f = 0; f < patch.cells[c].facet_count; ++f) {
         const PatchFacet& facet = patch.facets[patch.cells[c].first_facet + f];
         for (std::uint32_t k = 0; k < facet.corner_count; ++k)
-          if ((frame_from_part_ * (corner(patch, facet, k) + shift)).z() > thickness_mm_ - kMinRoom * part_.size_mm)
+          if ((frame_from_part_ * (corner_of(patch, facet, k) + shift)).z() >
+              thickness_mm_ - kMinFacetRoom * part_.size_mm)
             return;
       }
     const auto first = static_cast<std::uint32_t>(own().cells.size());
@@ -117,7 +118,7 @@ class Builder {
       lower = lower.cwiseMin(p);
       upper = upper.cwiseMax(p);
     }
-    const Vec2 margin = Vec2::Constant(kMargin * part_.size_mm);
+    const Vec2 margin = Vec2::Constant(kExcerptMargin * part_.size_mm);
     made.outline = to_polygon({lower.head<2>() - margin, upper.head<2>() + margin});
     made.element_depth_mm = -lower.z();
     made.top_mm = std::min(thickness_mm_, upper.z());
@@ -150,7 +151,7 @@ class Builder {
   void add_facet(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
     std::vector<Vec3> moved;
     for (std::uint32_t k = 0; k < facet.corner_count; ++k)
-      moved.push_back(frame_from_part_ * (corner(patch, facet, k) + shift));
+      moved.push_back(frame_from_part_ * (corner_of(patch, facet, k) + shift));
     const Vec3 on_plane = frame_from_part_ * (facet.offset_mm * facet.normal + shift);
     push_facet(moved, frame_from_part_.linear() * facet.normal, on_plane, facet.role);
     if (!facet.centroid_mm || !(std::abs(facet.normal.z()) > 0.0)) return;
@@ -205,7 +206,7 @@ std::pair<double, double> range_within(const Vec2& a, const Vec2& b, const Recta
 /// Adds the sides of the real part within a rectangle. A side is a vertical wall from below the back up to the entrance
 /// face. Its portion below z = 0 is a border wall.
 void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& frame_from_part, double thickness_mm,
-               Builder& builder) {
+               ExcerptBuilder& builder) {
   const Vec3 up = frame_from_part.linear() * Vec3::UnitZ();
   const auto top_at = [&](const Vec2& p) {
     const Vec3 at = frame_from_part * Vec3(p.x(), p.y(), 0.0);
@@ -232,7 +233,7 @@ void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& 
 }
 
 /// Returns true if the boxes of a cell and of an element, in plan, are at most `reach_mm` apart along both axes.
-bool is_near(const Vec3& lower, const Vec3& upper, const PlacedElement& element, double reach_mm) {
+bool is_within_reach(const Vec3& lower, const Vec3& upper, const PlacedElement& element, double reach_mm) {
   return ((lower - element.upper_mm).head<2>().array() <= reach_mm).all() &&
          ((element.lower_mm - upper).head<2>().array() <= reach_mm).all();
 }
@@ -250,14 +251,14 @@ std::vector<PlacedElement> placed_elements(const Part& part) {
       element.cells.push_back(c);
     }
     for (auto& [id, element] : by_id)
-      if (measure(part, element)) elements.push_back(std::move(element));
+      if (find_points(part, element)) elements.push_back(std::move(element));
   }
   return elements;
 }
 
 ElementExcerpt excerpt_around(const Part& part, const PlacedElement& element, const Eigen::Isometry3d& frame_from_part,
                               double thickness_mm, double reach_mm) {
-  Builder builder(part, frame_from_part, thickness_mm);
+  ExcerptBuilder builder(part, frame_from_part, thickness_mm);
   builder.add(part.placements[element.placement], element.cells, true);
   for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
     const Placement& placement = part.placements[p];
@@ -265,15 +266,14 @@ ElementExcerpt excerpt_around(const Part& part, const PlacedElement& element, co
     const Vec3 shift = shift_of(placement);
     std::map<std::uint64_t, std::vector<std::uint32_t>> near;
     for (std::uint32_t c = 0; c < patch.cells.size(); ++c)
-      if (is_near(patch.cells[c].lower + shift, patch.cells[c].upper + shift, element, reach_mm))
+      if (is_within_reach(patch.cells[c].lower + shift, patch.cells[c].upper + shift, element, reach_mm))
         near[part.element_id(patch, patch.cells[c])].push_back(c);
     for (const auto& [id, cells] : near) {
       if (p == element.placement && cells.front() == element.cells.front()) continue;
       bool is_element = false;
       for (const std::uint32_t c : cells)
         for (std::uint32_t f = 0; f < patch.cells[c].facet_count; ++f)
-          is_element =
-              is_element || patch.facets[patch.cells[c].first_facet + f].role == FacetRole::retro_facet;
+          is_element = is_element || patch.facets[patch.cells[c].first_facet + f].role == FacetRole::retro_facet;
       builder.add(placement, cells, is_element);
     }
   }

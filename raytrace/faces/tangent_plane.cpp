@@ -9,7 +9,7 @@
 namespace retrace::raytrace {
 namespace {
 
-constexpr int kMaxSteps = 60;
+constexpr int kMaxNewtonSteps = 60;
 // Accuracy of intersections and of points of entry.
 constexpr double kAccuracy_mm = 1e-11;
 // Degree of the polynomial that describes the height above the tangent plane, and number of sample points along each
@@ -53,7 +53,7 @@ Vec3 refracted_inside(const Vec2& slope, const Vec3& to_source, double index) {
 std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, const Vec3& target_mm,
                                    const Vec3& to_source, double index) {
   Vec2 at = target_mm.head<2>();
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     const geometry::EntranceSurface::SurfaceSample sample = surface.at(at);
     if (!is_defined(sample)) return std::nullopt;
     const Vec3 direction = refracted_inside(sample.slope, to_source, index);
@@ -83,8 +83,7 @@ std::optional<double> concentration(const geometry::EntranceSurface& surface, co
     const Vec2 by = step_mm * Vec2::Unit(axis);
     spread.col(axis) = (hit(at + by) - hit(at - by)) / (2.0 * step_mm);
   }
-  const double of_plane =
-      1.0 - plane.surface_slope.dot(lean(refracted_inside(plane.surface_slope, to_source, index)));
+  const double of_plane = 1.0 - plane.surface_slope.dot(lean(refracted_inside(plane.surface_slope, to_source, index)));
   const double ratio = of_plane / spread.determinant();
   if (!std::isfinite(ratio) || !(ratio > 0.0)) return std::nullopt;
   return ratio;
@@ -93,7 +92,7 @@ std::optional<double> concentration(const geometry::EntranceSurface& surface, co
 std::optional<SurfacePoint> nearest_intersection(const geometry::EntranceSurface& surface, const Vec3& start_mm,
                                                  const Vec3& direction) {
   SurfacePoint found;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     found.point_mm = start_mm + found.distance_mm * direction;
     const geometry::EntranceSurface::SurfaceSample sample = surface.at(found.point_mm.head<2>());
     if (!is_defined(sample)) return std::nullopt;

@@ -16,8 +16,8 @@ using geometry::Vec2, geometry::Vec3;
 /// Tangent plane of an entrance surface, with a frame whose z axis is the normal of the surface at the tangent point.
 /// The frame is rotated from the part frame about the axis that is perpendicular to z of both frames.
 struct TangentPlane {
-  Vec3 point_mm = Vec3::Zero();    ///< tangent point in the part frame
-  Vec3 normal = Vec3::UnitZ();     ///< out of the part
+  Vec3 point_mm = Vec3::Zero();       ///< tangent point in the part frame
+  Vec3 normal = Vec3::UnitZ();        ///< out of the part
   Vec2 surface_slope = Vec2::Zero();  ///< slope of the surface at the tangent point, in the part frame
   Eigen::Matrix3d frame_from_part = Eigen::Matrix3d::Identity();  ///< rotation
 

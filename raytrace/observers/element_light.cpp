@@ -18,7 +18,7 @@ using geometry::ElementExcerpt, geometry::PlacedElement, geometry::Polygon;
 // Number of nearest elements that may bound the portion of an element.
 constexpr std::size_t kMaxNeighbours = 48;
 // Distance in plan up to which an excerpt contains the surroundings of an element, in sizes of the element.
-constexpr double kReachInElements = 1.5;
+constexpr double kSurroundings = 1.5;
 // Half width of the square in which the surface is fitted, relative to the portion of the element.
 constexpr double kFittedWidth = 1.25;
 // Distance of neighbouring light for the concentration of the surface, in sizes of the element.
@@ -33,7 +33,7 @@ constexpr double kMinThickness = 1e-5;
 constexpr double kMaxConcentration = 2.0;
 
 /// Returns the half-plane of a tangent plane's frame in which normal . p <= offset for points p of the part frame.
-HalfPlane half_plane(const TangentPlane& plane, const Vec3& normal, double offset) {
+HalfPlane half_plane_on(const TangentPlane& plane, const Vec3& normal, double offset) {
   const Vec3 own = plane.frame_from_part * normal;
   return {own.x(), own.y(), offset - normal.dot(plane.point_mm)};
 }
@@ -44,7 +44,7 @@ double largest_coordinate(const Polygon& polygon) {
   return most;
 }
 
-Polygon to_polygon(const FlatPolygon& polygon) {
+Polygon as_polygon(const FlatPolygon& polygon) {
   return {polygon.begin(), polygon.end()};
 }
 
@@ -100,10 +100,9 @@ ElementLight::ElementLight(const geometry::Part& part, std::shared_ptr<const geo
       return (elements_[k].apex_mm - element.apex_mm).head<2>().squaredNorm();
     };
     const std::size_t count = std::min(others.size(), kMaxNeighbours + 1);
-    std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), others.end(),
-                      [&](std::uint32_t a, std::uint32_t b) {
-                        return std::pair(distance(a), a) < std::pair(distance(b), b);
-                      });
+    std::partial_sort(
+        others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), others.end(),
+        [&](std::uint32_t a, std::uint32_t b) { return std::pair(distance(a), a) < std::pair(distance(b), b); });
     std::vector<std::uint32_t>& near = neighbours_.emplace_back();
     for (std::size_t k = 0; k < count; ++k)
       if (&elements_[others[k]] != &element) near.push_back(others[k]);
@@ -128,10 +127,10 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
     const Vec2& a = part_.outline[k];
     const Vec2 along = part_.outline[(k + 1) % part_.outline.size()] - a;
     const Vec2 outward(along.y(), -along.x());
-    bounds.of_part.push_back(half_plane(plane, {outward.x(), outward.y(), 0.0}, outward.dot(a)));
+    bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), 0.0}, outward.dot(a)));
     // The incident beam covers the outline in the plane that touches the surface from above.
     const double lean = outward.dot(per_height);
-    bounds.of_part.push_back(half_plane(plane, {outward.x(), outward.y(), -lean}, outward.dot(a) - lean * top_mm_));
+    bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), -lean}, outward.dot(a) - lean * top_mm_));
   }
   const Vec2 own = plane.point_mm.head<2>();
   for (const std::optional<Vec2>& other : tangent_points) {
@@ -139,7 +138,7 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
     const Vec2 away = *other - own;
     if (away.norm() > bounds.merge_mm)
       bounds.of_neighbours.push_back(
-          half_plane(plane, {away.x(), away.y(), 0.0}, away.dot(own) + 0.5 * away.squaredNorm()));
+          half_plane_on(plane, {away.x(), away.y(), 0.0}, away.dot(own) + 0.5 * away.squaredNorm()));
   }
   return bounds;
 }
@@ -166,9 +165,8 @@ std::vector<ElementPortion> ElementLight::portions(const Vec3& to_source, double
     portion.at_mm = plane->point_mm.head<2>();
     portion.fraction = lit.size() < 3 ? 0.0 : raytrace::area(lit) * fraction_per_mm2(*plane, to_source);
     const double beside_mm = 0.6 * (elements_[k].upper_mm - elements_[k].lower_mm).head<2>().maxCoeff();
-    portion.is_at_border =
-        lit.size() < 3 || raytrace::area(lit) < (1.0 - kEmptyArea) * raytrace::area(cell) ||
-        !geometry::contains(part_.outline, elements_[k].apex_mm.head<2>(), -beside_mm);
+    portion.is_at_border = lit.size() < 3 || raytrace::area(lit) < (1.0 - kEmptyArea) * raytrace::area(cell) ||
+                           !geometry::contains(part_.outline, elements_[k].apex_mm.head<2>(), -beside_mm);
   }
   return portions;
 }
@@ -204,15 +202,13 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
 
   Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
   frame_from_part.linear() = plane->frame_from_part;
-  frame_from_part.translation() =
-      Vec3(0.0, 0.0, thickness_mm) - plane->frame_from_part * plane->point_mm;
-  scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm,
-                                            kReachInElements * part_.size_mm);
+  frame_from_part.translation() = Vec3(0.0, 0.0, thickness_mm) - plane->frame_from_part * plane->point_mm;
+  scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm, kSurroundings * part_.size_mm);
   geometry::Part& made = scene->excerpt.part;
   double face_mm2 = 0.0;
   geometry::Rectangle box = geometry::bounding_box(made.outline);
   for (const FlatPolygon& piece : pieces) {
-    made.entrance_pieces.push_back(to_polygon(piece));
+    made.entrance_pieces.push_back(as_polygon(piece));
     face_mm2 += raytrace::area(piece);
     for (const Vec2& p : piece) {
       box.lower = box.lower.cwiseMin(p);
@@ -221,13 +217,13 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   }
   made.outline = geometry::to_polygon(box);
   made.entrance_area_mm2 = face_mm2;
-  scene->portion_mm = to_polygon(portion);
+  scene->portion_mm = as_polygon(portion);
   scene->fraction = raytrace::area(portion) * fraction_per_mm2(*plane, to_source);
   scene->to_source = scene->direction(to_source);
-  const std::optional<double> denser = concentration(*surface_, *plane, to_source, index, own.upper_mm.z(),
-                                                     kConcentrationStep * part_.size_mm);
+  const std::optional<double> denser =
+      concentration(*surface_, *plane, to_source, index, own.upper_mm.z(), kConcentrationStep * part_.size_mm);
   const std::optional<SurfaceSag> sag =
-      fitted_sag(*surface_, *plane, kFittedWidth * largest_coordinate(to_polygon(shadow)));
+      fitted_sag(*surface_, *plane, kFittedWidth * largest_coordinate(as_polygon(shadow)));
   if (!denser || *denser > kMaxConcentration || *denser < 1.0 / kMaxConcentration || !sag) return nullptr;
   scene->sag = *sag;
   scene->power_factor = *denser * face_mm2 * fraction_per_mm2(*plane, to_source);
@@ -293,9 +289,8 @@ BeamResult trace_element(const ElementScene& scene, const Optics& optics, const 
     if (beam.depth == 0) return;
     const std::uint64_t first = beam.trail.first ? beam.trail.first->id : 0;
     const bool meets_element = beam.trail.first && excerpt.is_element[first];
-    const bool is_own = meets_element
-                            ? first == 0
-                            : geometry::contains(scene.portion_mm, geometry::centroid(beam.entry_polygon_mm));
+    const bool is_own =
+        meets_element ? first == 0 : geometry::contains(scene.portion_mm, geometry::centroid(beam.entry_polygon_mm));
     if (!is_own) return;
     ReturnedBeam curved = beam;
     add_surface(scene, curved);
@@ -309,7 +304,8 @@ std::vector<DirectionSample> spread_directions(const ReturnedBeam& beam) {
     for (const TexturedHit& hit : beam.hits) {
       if (hit.form == nullptr) continue;
       const Vec3 at = hit.constant_mm + hit.slope.leftCols<2>() * (exit_mm - beam.centre_mm);
-      cosines += hit.path_per_height * hit.slope.topLeftCorner<2, 2>().transpose() * hit.form->slope(hit.frame.local(at));
+      cosines +=
+          hit.path_per_height * hit.slope.topLeftCorner<2, 2>().transpose() * hit.form->slope(hit.frame.local(at));
     }
     return Vec3(cosines.x(), cosines.y(), std::sqrt(std::max(0.0, 1.0 - cosines.squaredNorm())));
   };

@@ -19,7 +19,7 @@ namespace retrace::raytrace {
 /// Portion of the incident light that belongs to an element: the light that enters nearest to the tangent point of the
 /// element. The portions of all elements together are the light that enters the part.
 struct ElementPortion {
-  double fraction = 0.0;  ///< fraction of the light that is incident on the part
+  double fraction = 0.0;      ///< fraction of the light that is incident on the part
   Vec2 at_mm = Vec2::Zero();  ///< tangent point in plan
   bool is_at_border = false;  ///< true if the border of the part cuts the portion, or is near the element
 };

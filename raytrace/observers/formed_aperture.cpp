@@ -28,8 +28,8 @@ constexpr double kOneCorner = 1e-12;
 // Minimum relative power in the formula for the subdivision. Weaker polygons are subdivided as if they had this power.
 constexpr double kMinRelativePower = 1e-4;
 
-/// Phase that the forms of surfaces add to the light of a polygon, as a function of the point where the light leaves the
-/// entrance face.
+/// Phase that the forms of surfaces add to the light of a polygon, as a function of the point where the light leaves
+/// the entrance face.
 struct FormPhase {
   const std::vector<FieldHit>& hits;
   double wave_number = 0.0;

@@ -11,28 +11,28 @@ namespace {
 
 using geometry::EntranceSurface, geometry::Polygon, geometry::Rectangle;
 
-// The outline is divided at least kMinDepth and at most kMaxDepth times into quarters.
-constexpr int kMinDepth = 5, kMaxDepth = 16;
+// The outline is divided at least kMinDivisions and at most kMaxDivisions times into quarters.
+constexpr int kMinDivisions = 5, kMaxDivisions = 16;
 // A rectangle is divided until the directions of its reflected light differ by less than this fraction of the kernel's
 // radius.
 constexpr double kFineness = 0.15;
 // Factor by which the directions at sample points of a rectangle are assumed to underestimate their range.
 constexpr double kRangeMargin = 1.5;
 // Corners are merged if their distance is less than this fraction of the size of the outline.
-constexpr double kMerge = 1e-12;
+constexpr double kMergedCorner = 1e-12;
 
 /// Adds up the reflected light by dividing the outline into rectangles.
-class Reflection {
+class ReflectedSum {
  public:
-  Reflection(const EntranceSurface& surface, Polygon lit, const Vec3& to_source, const Vec3& receiver,
-             const ApertureKernel& kernel, const std::function<double(const Vec3&)>& reflectance)
+  ReflectedSum(const EntranceSurface& surface, Polygon lit, const Vec3& to_source, const Vec3& receiver,
+               const ApertureKernel& kernel, const std::function<double(const Vec3&)>& reflectance)
       : surface_(surface),
         lit_(std::move(lit)),
         to_source_(to_source),
         receiver_(receiver),
         kernel_(kernel),
         reflectance_(reflectance),
-        merge_mm_(kMerge * geometry::bounding_box(lit_).size().norm()) {}
+        merge_mm_(kMergedCorner * geometry::bounding_box(lit_).size().norm()) {}
 
   double sum() const { return sum_; }
 
@@ -46,8 +46,8 @@ class Reflection {
         if (direction.allFinite()) range = std::max(range, kRangeMargin * (direction - middle).norm());
       }
     const double reach = kernel_.reach_rad();
-    if (depth >= kMinDepth && (middle - receiver_).norm() > range + 1.01 * reach) return;
-    if ((depth >= kMinDepth && range < kFineness * reach) || depth >= kMaxDepth) return add_light(box, middle);
+    if (depth >= kMinDivisions && (middle - receiver_).norm() > range + 1.01 * reach) return;
+    if ((depth >= kMinDivisions && range < kFineness * reach) || depth >= kMaxDivisions) return add_light(box, middle);
     const Vec2 half = 0.5 * box.size();
     for (const double u : {0.0, 1.0})
       for (const double v : {0.0, 1.0}) {
@@ -93,7 +93,7 @@ Polygon lit_outline(const EntranceSurface& surface, const Polygon& outline, doub
     const double depth_mm = top_mm - surface.at(corner).height_mm;
     shifted.push_back(corner - (std::isfinite(depth_mm) ? depth_mm : 0.0) * Vec2(to_source.head<2>() / to_source.z()));
   }
-  return geometry::clip(outline, shifted, kMerge * geometry::bounding_box(outline).size().norm());
+  return geometry::clip(outline, shifted, kMergedCorner * geometry::bounding_box(outline).size().norm());
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ double reflected_per_sr(const EntranceSurface& surface, const Polygon& outline, 
   Polygon lit = lit_outline(surface, outline, top_mm, to_source);
   if (lit.size() < 3) return 0.0;
   const Rectangle box = geometry::bounding_box(lit);
-  Reflection reflection(surface, std::move(lit), to_source, receiver, kernel, reflectance);
+  ReflectedSum reflection(surface, std::move(lit), to_source, receiver, kernel, reflectance);
   reflection.add(box, 0);
   return reflection.sum() / (geometry::area(outline) * to_source.z());
 }

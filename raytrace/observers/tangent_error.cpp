@@ -16,7 +16,7 @@ namespace {
 constexpr double kTowardsCorner = 0.9;
 
 /// Light that leaves the part, as a wave at a point of the tangent plane.
-struct LeavingRay {
+struct OutgoingRay {
   Vec2 at_mm;  ///< intersection with the tangent plane, relative to the centre of the excerpt
   Vec2 cosines;
   double path_mm = 0.0;  ///< optical path up to this point, with the phase 0 of ReturnedBeam::phase_mm
@@ -30,7 +30,7 @@ class RayFollower {
       : surface_(surface), scene_(scene), beam_(beam), path_(path) {}
 
   /// \param entry_mm point where the undeviated ray crosses the tangent plane
-  std::optional<LeavingRay> follow(const Vec2& entry_mm) const {
+  std::optional<OutgoingRay> follow(const Vec2& entry_mm) const {
     const Vec3 down = -scene_.to_source;
     const std::optional<Met> in = met({entry_mm.x(), entry_mm.y(), 0.0}, down);
     if (!in) return std::nullopt;
@@ -45,8 +45,8 @@ class RayFollower {
     if (!outside.allFinite() || !(outside.z() > 0.0)) return std::nullopt;
     const double beyond_mm = -out->at.z() / outside.z();
     const double length_mm = about_mm + out->distance_mm;
-    return LeavingRay{(out->at + beyond_mm * outside).head<2>(), outside.head<2>(),
-                      down.dot(in->at) + beam_.index * length_mm + beyond_mm};
+    return OutgoingRay{(out->at + beyond_mm * outside).head<2>(), outside.head<2>(),
+                       down.dot(in->at) + beam_.index * length_mm + beyond_mm};
   }
 
  private:
@@ -71,8 +71,7 @@ class RayFollower {
   /// Returns the direction after refraction. It is not finite beyond the critical angle.
   static Vec3 bent(const Vec3& direction, const Vec3& facing_normal, double ratio) {
     const double cosine = -facing_normal.dot(direction);
-    return refracted(direction, facing_normal, ratio, cosine,
-                     std::sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine)));
+    return refracted(direction, facing_normal, ratio, cosine, std::sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine)));
   }
 
   const geometry::EntranceSurface& surface_;
@@ -111,7 +110,7 @@ void TangentError::add(const geometry::EntranceSurface& surface, const ElementSc
   double sum = 0.0;
   const double power = beam.stokes.i / static_cast<double>(entries.size());
   for (const Vec2& entry : entries) {
-    const std::optional<LeavingRay> ray = rays.follow(entry - beam.centre_mm);
+    const std::optional<OutgoingRay> ray = rays.follow(entry - beam.centre_mm);
     if (!ray) {
       add_failure();
       continue;

@@ -36,10 +36,11 @@ struct Coordinates {
 Eigen::VectorXd terms_at(const Coordinates& at, bool is_border, std::size_t samples) {
   const auto& [x, y, u, f] = at;
   const std::vector<double> terms =
-      is_border ? std::vector<double>{1.0, f, u, x, y, f * f, x * x, x * y, y * y, f * x, f * y}
-                : std::vector<double>{1.0,   u,     x,     y,     x * x, x * y, y * y,     u * u,    u * x,    u * y,
-                                      x * x * x, x * x * y, x * y * y, y * y * y, x * x * x * x, x * x * y * y,
-                                      y * y * y * y};
+      is_border
+          ? std::vector<double>{1.0, f, u, x, y, f * f, x * x, x * y, y * y, f * x, f * y}
+          : std::vector<double>{
+                1.0,   u,         x,         y,         x * x,     x * y,         y * y,         u * u,        u * x,
+                u * y, x * x * x, x * x * y, x * y * y, y * y * y, x * x * x * x, x * x * y * y, y * y * y * y};
   const std::size_t count = std::clamp<std::size_t>(samples / kSamplesPerTerm, 1, terms.size());
   return Eigen::Map<const Eigen::VectorXd>(terms.data(), static_cast<Eigen::Index>(count));
 }
@@ -60,9 +61,8 @@ class Scale {
 
   Coordinates at(std::size_t element, std::size_t wavelength) const {
     const Vec2 place = 2.0 * (portions_[element].at_mm - lower_).cwiseQuotient(size()) - Vec2::Ones();
-    const double u = wavelengths_ > 1
-                         ? 2.0 * static_cast<double>(wavelength) / static_cast<double>(wavelengths_ - 1) - 1.0
-                         : 0.0;
+    const double u =
+        wavelengths_ > 1 ? 2.0 * static_cast<double>(wavelength) / static_cast<double>(wavelengths_ - 1) - 1.0 : 0.0;
     return {place.x(), place.y(), u, 2.0 * portions_[element].fraction / largest_ - 1.0};
   }
   /// Returns the position for two numbers from 0 to 1.
@@ -111,8 +111,7 @@ void ElementSample::add_stratum(const std::vector<ElementPortion>& portions, con
   std::set<std::pair<std::size_t, std::size_t>> chosen;
   for (std::size_t k = 0; chosen.size() < max_count && k < 8 * max_count; ++k) {
     std::array<double, 3> u;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      u[axis] = fraction_of(0.5 + static_cast<double>(k) * kSequence[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) u[axis] = fraction_of(0.5 + static_cast<double>(k) * kSequence[axis]);
     const Vec2 place = scale.position(u[0], u[1]);
     std::size_t wavelength = 0;
     for (double sum = weights[0]; wavelength + 1 < weights.size() && sum < u[2] * all_weights;)

@@ -45,11 +45,11 @@ class ElementSample {
  private:
   /// Samples of either the elements near the border or all other elements.
   struct Stratum {
-    std::size_t first = 0;      ///< index of the first sample
+    std::size_t first = 0;  ///< index of the first sample
     std::size_t count = 0;
-    Eigen::MatrixXd powers;     ///< values of the polynomials' terms at the samples; empty if all elements are selected
-    Eigen::MatrixXd inverse;    ///< pseudo-inverse of `powers`
-    double unsampled = 0.0;     ///< sum of the squares of portion * weight
+    Eigen::MatrixXd powers;   ///< values of the polynomials' terms at the samples; empty if all elements are selected
+    Eigen::MatrixXd inverse;  ///< pseudo-inverse of `powers`
+    double unsampled = 0.0;   ///< sum of the squares of portion * weight
   };
   void add_stratum(const std::vector<raytrace::ElementPortion>& portions, const std::vector<double>& weights,
                    const std::vector<std::size_t>& elements, std::size_t max_count);

@@ -92,10 +92,10 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 /// \param model null: not known yet; an exact surface is assumed
 void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySettings& request,
                           raytrace::EngineFacts& facts) {
-  const bool is_mesh =
-      model != nullptr && model->entrance &&
-      !std::holds_alternative<std::shared_ptr<const geometry::EntranceSurface>>(*model->entrance);
-  if (!is_mesh && request.diffraction && !(model != nullptr && model->part.period_mm)) facts.has_curved_entrance = false;
+  const bool is_mesh = model != nullptr && model->entrance &&
+                       !std::holds_alternative<std::shared_ptr<const geometry::EntranceSurface>>(*model->entrance);
+  if (!is_mesh && request.diffraction && !(model != nullptr && model->part.period_mm))
+    facts.has_curved_entrance = false;
 }
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
@@ -257,8 +257,7 @@ std::vector<double> Photometer::wavelengths_nm() const {
   return all;
 }
 
-PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
-                                         const std::vector<WavelengthReading>& pieces,
+PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces,
                                          const std::vector<double>& weights) const {
   PhotometerReading reading;
   const raytrace::SourceAngles source = raytrace::source_angles(frame_of(setting).to_source);

@@ -249,10 +249,9 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure_behind_surface(const std::vector<PhotometerSetting>& settings,
                                                                        Progress* progress,
                                                                        const Cancellation* cancel) const;
-  ElementReading measure_element(const std::vector<PhotometerSetting>& settings,
-                                 const EquivalentDirections& directions, const raytrace::ElementLight& elements,
-                                 std::size_t element, std::size_t wavelength, bool compares_rays,
-                                 const Cancellation* cancel) const;
+  ElementReading measure_element(const std::vector<PhotometerSetting>& settings, const EquivalentDirections& directions,
+                                 const raytrace::ElementLight& elements, std::size_t element, std::size_t wavelength,
+                                 bool compares_rays, const Cancellation* cancel) const;
   /// Adds the light that the curved entrance surface reflects at its outer side to the sum over all wavelengths.
   void add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
                               const raytrace::ElementLight& elements, WavelengthReading& sum) const;

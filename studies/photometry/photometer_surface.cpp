@@ -84,8 +84,8 @@ double Photometer::body_transmittance(std::size_t wavelength) const {
 std::size_t Photometer::max_element_samples(const std::vector<PhotometerSetting>& settings) const {
   double angles = 0.0;
   for (const PhotometerSetting& setting : settings)
-    angles = std::max(angles, static_cast<double>(setting.observation_deg.size()) +
-                                  (setting.map_columns > 0 ? kAnglesOfMap : 0.0));
+    angles = std::max(
+        angles, static_cast<double>(setting.observation_deg.size()) + (setting.map_columns > 0 ? kAnglesOfMap : 0.0));
   const std::size_t usual = effort_ == Effort::full ? kSamples : kFewSamples;
   const double wanted = static_cast<double>(usual) * std::min(1.0, kAnglesOfSamples / std::max(1.0, angles));
   return std::max(kMinSamples, static_cast<std::size_t>(wanted));
@@ -101,8 +101,7 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
   const Vec3 to_source = frame_of(settings[directions.front().index]).to_source;
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   WavelengthReading common;
-  const std::unique_ptr<const raytrace::ElementScene> scene =
-      elements.scene(element, to_source, light.optics.index);
+  const std::unique_ptr<const raytrace::ElementScene> scene = elements.scene(element, to_source, light.optics.index);
   if (!scene) {
     // The light of an element without a tangent plane is missing in the reading.
     for (const SharedDirection& one : directions) {
@@ -123,8 +122,8 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
   policy.separate_cells = true;
   policy.keeps_phases = keeps_phases();
   double scattered_from_cone = 0.0;
-  const raytrace::BeamResult beams = trace_element(
-      *scene, light.optics, illumination, cones, policy, cancel, [&](const raytrace::ReturnedBeam& beam) {
+  const raytrace::BeamResult beams =
+      trace_element(*scene, light.optics, illumination, cones, policy, cancel, [&](const raytrace::ReturnedBeam& beam) {
         if (!has_mirror_image_ && beam.entry_from_exit.linear().trace() >= kMinTraceOfMirror) return;
         collector.add(beam);
         double variance = 0.0;
@@ -166,8 +165,7 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
       const raytrace::DirectionGrid grid = grid_of_map(setting, request_.window_deg);
       piece.map_per_sr = field.binned(frame, grid);
       piece.map_per_sr.pop_back();
-      for (std::size_t bin = 0; bin < grid.size(); ++bin)
-        piece.map_per_sr[bin] *= factor / grid.solid_angle_sr(bin);
+      for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] *= factor / grid.solid_angle_sr(bin);
     }
     for (double* const power : {&piece.rre, &piece.truncated, &piece.beyond_budget}) *power *= factor;
     reading.pieces.push_back(std::move(piece));
@@ -186,16 +184,15 @@ void Photometer::add_surface_reflection(const PhotometerSetting& setting, const 
     light.rotate_basis_to_interface(-frame.to_source, normal);
     double power = 0.0;
     for (std::size_t w = 0; w < model_.spectral.size(); ++w)
-      power += weights_[w] *
-               light.reflected(fresnel_at_entrance(model_.spectral[w].optics, false, normal.dot(frame.to_source)))
-                   .power();
+      power +=
+          weights_[w] *
+          light.reflected(fresnel_at_entrance(model_.spectral[w].optics, false, normal.dot(frame.to_source))).power();
     return power;
   };
   const geometry::Polygon& outline = model_.part.outline;
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k)
-    sum.per_sr[k] +=
-        reflected_per_sr(elements.surface(), outline, elements.top_mm(), frame.to_source,
-                         towards_receiver(frame, setting.observation_deg[k]), kernel_, reflectance);
+    sum.per_sr[k] += reflected_per_sr(elements.surface(), outline, elements.top_mm(), frame.to_source,
+                                      towards_receiver(frame, setting.observation_deg[k]), kernel_, reflectance);
   std::optional<raytrace::DirectionGrid> grid;
   if (setting.map_columns > 0) grid = grid_of_map(setting, request_.window_deg);
   visit_reflected(elements.surface(), outline, elements.top_mm(), frame.to_source, kReflectionColumns, reflectance,
@@ -286,7 +283,8 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface
       model.angle_rms_arcmin = 60.0 * Angle::from_rad(error.angle_rms_rad()).deg();
       model.max_angle_arcmin = 60.0 * Angle::from_rad(error.max_angle_rad()).deg();
       model.allowed_angle_arcmin = 60.0 * Angle::from_rad(kMaxAngleFraction * kernel_.reach_rad()).deg();
-      reading.lacks_diffraction = reading.lacks_diffraction || !(error.max_angle_rad() <= kMaxAngleFraction * kernel_.reach_rad());
+      reading.lacks_diffraction =
+          reading.lacks_diffraction || !(error.max_angle_rad() <= kMaxAngleFraction * kernel_.reach_rad());
     }
   }
   return readings;
