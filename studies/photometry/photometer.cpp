@@ -232,7 +232,8 @@ NoDiffraction Photometer::why_undiffracted() const {
   if (!request_.diffraction) return Undiffracted::not_requested;
   if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts_)) return *obstacle;
   if (is_exact()) return model_.entrance ? Undiffracted::strong_curvature : Undiffracted::unequal_cells;
-  return request_.engine == raytrace::Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
+  if (request_.engine != raytrace::Engine::automatic) return Undiffracted::monte_carlo;
+  return model_.entrance ? Undiffracted::strong_curvature : Undiffracted::too_many_beams;
 }
 
 void Photometer::ignore_diffraction() {

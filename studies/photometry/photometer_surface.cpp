@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/error.h"
 #include "core/task_progress.h"
 #include "core/within_memory.h"
 #include "raytrace/light/light_setup.h"
@@ -231,17 +232,32 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface
     one.readings.resize(one.sample->samples().size());
     for (std::size_t k = 0; k < one.readings.size(); ++k) tasks.emplace_back(directions.size() - 1, k);
   }
+  // Samples that are compared with rays come first. If the model fails for one of them, the others are not traced.
+  const auto compared = [](const std::pair<std::size_t, std::size_t>& task) {
+    return task.second % kComparedSamples == 0;
+  };
+  const auto first_other = std::stable_partition(tasks.begin(), tasks.end(), compared);
   TaskProgress all(progress, std::max<std::size_t>(1, tasks.size()));
-  for_each_within_memory(tasks.size(), [&](std::size_t k) {
-    if (is_cancelled(cancel)) return;
-    TaskProgress::Task task(all);
-    Direction& one = directions[tasks[k].first];
-    const std::size_t number = tasks[k].second;
-    const SampledElement& sampled = one.sample->samples()[number];
-    one.readings[number] = measure_element(settings, one.alike, elements, sampled.element, sampled.wavelength,
-                                           number % kComparedSamples == 0, cancel);
-    task.finish();
-  });
+  const auto trace = [&](std::size_t from, std::size_t to) {
+    for_each_within_memory(to - from, [&](std::size_t k) {
+      if (is_cancelled(cancel)) return;
+      TaskProgress::Task task(all);
+      Direction& one = directions[tasks[from + k].first];
+      const std::size_t number = tasks[from + k].second;
+      const SampledElement& sampled = one.sample->samples()[number];
+      one.readings[number] = measure_element(settings, one.alike, elements, sampled.element, sampled.wavelength,
+                                             compared(tasks[from + k]), cancel);
+      task.finish();
+    });
+  };
+  const auto checked = static_cast<std::size_t>(first_other - tasks.begin());
+  const double allowed_rad = kMaxAngleFraction * kernel_.reach_rad();
+  trace(0, checked);
+  for (const Direction& one : directions)
+    for (const ElementReading& reading : one.readings)
+      if (request_.engine == raytrace::Engine::automatic && !(reading.error.max_angle_rad() <= allowed_rad))
+        throw BudgetError(text_of(Undiffracted::strong_curvature));
+  trace(checked, tasks.size());
   std::vector<PhotometerReading> readings(settings.size());
   for (const Direction& one : directions) {
     raytrace::TangentError error;
@@ -282,9 +298,8 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface
       model.path_rms_waves = error.path_rms_mm() / (1e-6 * model_.spectral[model_.nearest_wavelength()].wavelength_nm);
       model.angle_rms_arcmin = 60.0 * Angle::from_rad(error.angle_rms_rad()).deg();
       model.max_angle_arcmin = 60.0 * Angle::from_rad(error.max_angle_rad()).deg();
-      model.allowed_angle_arcmin = 60.0 * Angle::from_rad(kMaxAngleFraction * kernel_.reach_rad()).deg();
-      reading.lacks_diffraction =
-          reading.lacks_diffraction || !(error.max_angle_rad() <= kMaxAngleFraction * kernel_.reach_rad());
+      model.allowed_angle_arcmin = 60.0 * Angle::from_rad(allowed_rad).deg();
+      reading.lacks_diffraction = reading.lacks_diffraction || !(error.max_angle_rad() <= allowed_rad);
     }
   }
   return readings;

@@ -252,7 +252,8 @@ Json entrance_model_json(const EntranceModel& model) {
 
 std::string entrance_model_text(const EntranceModel& model) {
   return fmt::format(
-      "curved entrance surface: tangent planes of {} of {} elements; differences from rays: paths {} wavelengths (rms), "
+      "curved entrance surface: tangent planes of {} of {} elements; differences from rays: paths {} wavelengths "
+      "(rms), "
       "directions at most {} arcmin (allowed: {})\n",
       model.traced_elements, model.elements, fixed_visible(model.path_rms_waves, 3),
       fixed_visible(model.max_angle_arcmin, 3), fixed_visible(model.allowed_angle_arcmin, 2));
