@@ -109,7 +109,6 @@ class ExcerptBuilder {
 
   ElementExcerpt finish() {
     Part& made = excerpt_.part;
-    made.spec = part_.spec;
     made.thickness_mm = thickness_mm_;
     made.size_mm = part_.size_mm;
     Vec3 lower = Vec3::Constant(INFINITY);

@@ -27,6 +27,8 @@ constexpr double kConcentrationStep = 0.05;
 constexpr double kEmptyArea = 1e-9;
 // Merging distance of corners, in sizes of the element.
 constexpr double kMerge = 1e-11;
+// Size of the fragments into which the entrance face of an excerpt is divided, relative to the largest piece.
+constexpr double kFragment = 1.001;
 // Minimum distance between an element and its tangent plane, in sizes of the element.
 constexpr double kMinThickness = 1e-5;
 // Maximum change of illuminance within the light of an element, as a factor.
@@ -79,10 +81,8 @@ struct ElementLight::Bounds {
     return polygon;
   }
   FlatPolygon cell() const {
-    FlatPolygon polygon = {{-diameter_mm, -diameter_mm},
-                           {diameter_mm, -diameter_mm},
-                           {diameter_mm, diameter_mm},
-                           {-diameter_mm, diameter_mm}};
+    FlatPolygon polygon = {Vec2(-diameter_mm, -diameter_mm), Vec2(diameter_mm, -diameter_mm),
+                           Vec2(diameter_mm, diameter_mm), Vec2(-diameter_mm, diameter_mm)};
     cut(polygon, of_neighbours, merge_mm);
     return polygon;
   }
@@ -206,16 +206,21 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm, kSurroundings * part_.size_mm);
   geometry::Part& made = scene->excerpt.part;
   double face_mm2 = 0.0;
+  Vec2 largest_mm = Vec2::Zero();
   geometry::Rectangle box = geometry::bounding_box(made.outline);
   for (const FlatPolygon& piece : pieces) {
     made.entrance_pieces.push_back(as_polygon(piece));
     face_mm2 += raytrace::area(piece);
+    largest_mm = largest_mm.cwiseMax(geometry::bounding_box(made.entrance_pieces.back()).size());
     for (const Vec2& p : piece) {
       box.lower = box.lower.cwiseMin(p);
       box.upper = box.upper.cwiseMax(p);
     }
   }
   made.outline = geometry::to_polygon(box);
+  // The exact engine divides the entrance face into fragments of the size of an element. Each piece is one fragment.
+  made.spec = {};
+  made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
   made.entrance_area_mm2 = face_mm2;
   scene->portion_mm = as_polygon(portion);
   scene->fraction = raytrace::area(portion) * fraction_per_mm2(*plane, to_source);
