@@ -16,6 +16,9 @@ constexpr double kAccuracy_mm = 1e-11;
 // axis.
 constexpr int kSagDegree = 6;
 constexpr int kSagPoints = 12;
+// Maximum degree of terms whose squared slope is a FacetForm.
+constexpr int kSquaredDegree = 5;
+static_assert(2 * (kSquaredDegree - 1) <= surface_models::FacetForm::kMaxDegree);
 
 Vec3 normal_of(const Vec2& slope) {
   return Vec3(-slope.x(), -slope.y(), 1.0).normalized();
@@ -108,13 +111,11 @@ std::optional<SurfacePoint> nearest_intersection(const geometry::EntranceSurface
 
 std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                      double half_width_mm) {
-  struct Term {
-    int i, j;
-  };
-  std::vector<Term> terms;
+  SurfaceSag sag;
+  std::vector<SurfaceSag::Term>& terms = sag.terms;
   for (int i = 0; i <= kSagDegree; ++i)
     for (int j = 0; i + j <= kSagDegree; ++j)
-      if (i + j >= 2) terms.push_back({i, j});
+      if (i + j >= 2) terms.push_back({i, j, 0.0});
   struct Point {
     Vec2 at;  ///< in units of the half width
     double height_mm;
@@ -136,17 +137,39 @@ std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, c
     const Point& point = points[static_cast<std::size_t>(row)];
     heights[row] = point.height_mm;
     for (Eigen::Index column = 0; column < powers.cols(); ++column) {
-      const Term& term = terms[static_cast<std::size_t>(column)];
+      const SurfaceSag::Term& term = terms[static_cast<std::size_t>(column)];
       powers(row, column) = std::pow(point.at.x(), term.i) * std::pow(point.at.y(), term.j);
     }
   }
   const Eigen::VectorXd coefficients = powers.colPivHouseholderQr().solve(heights);
-  SurfaceSag sag;
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    sag.form.add(terms[k].i, terms[k].j,
-                 coefficients[static_cast<Eigen::Index>(k)] / std::pow(half_width_mm, terms[k].i + terms[k].j));
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    SurfaceSag::Term& term = terms[k];
+    term.coefficient = coefficients[static_cast<Eigen::Index>(k)] / std::pow(half_width_mm, term.i + term.j);
+    sag.form.add(term.i, term.j, term.coefficient);
+  }
   sag.error_mm = (powers * coefficients - heights).cwiseAbs().maxCoeff();
   return sag;
+}
+
+surface_models::FacetForm squared_slope(const SurfaceSag& sag, const Vec2& per_height) {
+  // A slope (a, b) of the surface changes the phase across the light. The squared gradient across the light is
+  // a^2 + b^2 + (a per_height.x + b per_height.y)^2.
+  const double xx = 1.0 + per_height.x() * per_height.x();
+  const double yy = 1.0 + per_height.y() * per_height.y();
+  const double xy = per_height.x() * per_height.y();
+  surface_models::FacetForm squared;
+  const auto add = [&](int i, int j, double coefficient) {
+    if (i >= 0 && j >= 0) squared.add(i, j, coefficient);
+  };
+  for (const SurfaceSag::Term& p : sag.terms)
+    for (const SurfaceSag::Term& q : sag.terms) {
+      if (p.i + p.j > kSquaredDegree || q.i + q.j > kSquaredDegree) continue;
+      const double both = p.coefficient * q.coefficient;
+      add(p.i + q.i - 2, p.j + q.j, xx * both * p.i * q.i);
+      add(p.i + q.i, p.j + q.j - 2, yy * both * p.j * q.j);
+      add(p.i + q.i - 1, p.j + q.j - 1, 2.0 * xy * both * p.i * q.j);
+    }
+  return squared;
 }
 
 }  // namespace retrace::raytrace

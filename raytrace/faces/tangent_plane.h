@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "geometry/entrance/entrance_surface.h"
 #include "surface_models/facet_form.h"
@@ -58,12 +59,23 @@ std::optional<SurfacePoint> nearest_intersection(const geometry::EntranceSurface
 
 /// Height of a surface above its tangent plane, as a polynomial.
 struct SurfaceSag {
-  surface_models::FacetForm form;  ///< without constant and linear terms, in the frame of the tangent plane
+  /// Term coefficient * x^i y^j.
+  struct Term {
+    int i = 0, j = 0;
+    double coefficient = 0.0;  ///< in mm^(1 - i - j)
+  };
+  std::vector<Term> terms;         ///< i + j >= 2
+  surface_models::FacetForm form;  ///< sum of the terms, in the frame of the tangent plane
   double error_mm = 0.0;           ///< maximum difference from the surface at the sample points
 };
 /// Fits a polynomial to the height of a surface above its tangent plane within a square about the tangent point. Points
 /// where the surface is not defined are ignored. Returns nothing if too few points remain.
 std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                      double half_width_mm);
+
+/// Returns the squared slope of a surface across the direction of light, as a polynomial of the point where the light
+/// meets the tangent plane. Terms of the surface above degree 5 are ignored.
+/// \param per_height horizontal displacement of the light per change of height, in the frame of the tangent plane
+surface_models::FacetForm squared_slope(const SurfaceSag& sag, const Vec2& per_height);
 
 }  // namespace retrace::raytrace

@@ -231,6 +231,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
       fitted_sag(*surface_, *plane, kFittedWidth * largest_coordinate(as_polygon(shadow)));
   if (!denser || *denser > kMaxConcentration || *denser < 1.0 / kMaxConcentration || !sag) return nullptr;
   scene->sag = *sag;
+  const Vec3 inside = scene->direction(refracted_inside(plane->surface_slope, to_source, index));
+  scene->squared_slope = squared_slope(*sag, inside.head<2>() / inside.z());
   scene->power_factor = *denser * face_mm2 * fraction_per_mm2(*plane, to_source);
   return scene;
 }
@@ -280,6 +282,16 @@ void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
   entry.slope.topLeftCorner<2, 2>() = beam.entry_from_exit.linear();
   beam.hits.push_back(entry);
   beam.hits.push_back(surface_hit(scene, beam, beam.direction.z()));
+  // The surface makes the wave converge or diverge inside the part. Over the length L, a wave with the optical path
+  // phi(x) across its direction becomes phi - L |grad phi|^2 / 2 n (eikonal equation).
+  const Vec2 exit = geometry::centroid(beam.exit_polygon_mm) - beam.centre_mm;
+  const double path_mm =
+      beam.phase_mm + beam.direction.head<2>().dot(exit) + scene.to_source.head<2>().dot(beam.entry_from_exit * exit);
+  TexturedHit propagation = entry;
+  propagation.form = &scene.squared_slope;
+  propagation.path_per_height =
+      -0.5 * path_mm / (beam.index * beam.index) * entry.path_per_height * entry.path_per_height;
+  beam.hits.push_back(propagation);
 }
 
 }  // namespace

@@ -31,9 +31,10 @@ struct ElementScene {
   geometry::ElementExcerpt excerpt;
   TangentPlane plane;
   SurfaceSag sag;
-  Vec3 to_source = Vec3::UnitZ();  ///< in the frame of the excerpt
-  geometry::Polygon portion_mm;    ///< portion of the element on the tangent plane; see ElementPortion
-  double fraction = 0.0;           ///< as ElementPortion::fraction
+  surface_models::FacetForm squared_slope;  ///< squared slope of `sag` across the light that enters
+  Vec3 to_source = Vec3::UnitZ();           ///< in the frame of the excerpt
+  geometry::Polygon portion_mm;             ///< portion of the element on the tangent plane; see ElementPortion
+  double fraction = 0.0;                    ///< as ElementPortion::fraction
   /// Factor by which powers of beams in the excerpt are multiplied to obtain fractions of the light that is incident on
   /// the part.
   double power_factor = 0.0;

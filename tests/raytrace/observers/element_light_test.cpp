@@ -251,9 +251,8 @@ TEST(ElementLight, InclinedPlaneSteersNothing) {
   }
 }
 
-// The model neglects the change of the beam between the two passages of the surface. Its error in the direction is
-// therefore proportional to the square of the curvature.
-TEST(ElementLight, ErrorsAreQuadraticInTheCurvature) {
+// The model contains the terms of second order in the curvature. The error of the direction is of third order.
+TEST(ElementLight, ErrorsAreCubicInTheCurvature) {
   const Part part = build_part(single(HexagonalCube{3.0}, 2.0));
   const Vec2 middle = bounding_box(part.outline).centre();
   std::vector<double> angles;
@@ -263,9 +262,9 @@ TEST(ElementLight, ErrorsAreQuadraticInTheCurvature) {
     EXPECT_GT(found.error.rays(), 20U);
     angles.push_back(found.error.max_angle_rad());
   }
-  EXPECT_LT(angles[0], 0.2 * kArcmin);
-  EXPECT_NEAR(angles[1] / angles[0], 4.0, 0.4);
-  EXPECT_NEAR(angles[2] / angles[1], 4.0, 0.6);
+  EXPECT_LT(angles[0], 0.05 * kArcmin);
+  EXPECT_NEAR(angles[1] / angles[0], 8.0, 2.0);
+  EXPECT_NEAR(angles[2] / angles[1], 8.0, 3.0);
 }
 
 // The intensity of the mirror image in a sphere of radius R is rho E R^2 / 4 in every direction.
