@@ -198,7 +198,10 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
     pieces.push_back(portion);
     if (lit_shadow.size() >= 3) subtract(lit_shadow, portion, empty_mm2, bounds.merge_mm, pieces);
   }
-  if (pieces.empty()) return nullptr;
+  if (pieces.empty()) {
+    scene->is_lit = false;
+    return scene;
+  }
 
   Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
   frame_from_part.linear() = plane->frame_from_part;

@@ -28,6 +28,7 @@ struct ElementPortion {
 /// frame of the excerpt is the frame of the tangent plane, shifted along z. Objects refer to each other and are not
 /// copied.
 struct ElementScene {
+  bool is_lit = true;  ///< false if no light enters nearest to the element; all other members are then undefined
   geometry::ElementExcerpt excerpt;
   TangentPlane plane;
   SurfaceSag sag;
@@ -74,8 +75,8 @@ class ElementLight {
   /// plane have the fraction 0.
   std::vector<ElementPortion> portions(const Vec3& to_source, double index) const;
 
-  /// Returns an element with its surroundings. Returns nothing if the element receives no light, or if the surface has
-  /// no tangent plane for it.
+  /// Returns an element with its surroundings. Returns nothing if the surface has no tangent plane for the element, or
+  /// if a polynomial does not describe the surface.
   std::unique_ptr<const ElementScene> scene(std::size_t element, const Vec3& to_source, double index) const;
 
  private:

@@ -63,8 +63,10 @@ class Scale {
     const Vec2 place = 2.0 * (portions_[element].at_mm - lower_).cwiseQuotient(size()) - Vec2::Ones();
     const double u =
         wavelengths_ > 1 ? 2.0 * static_cast<double>(wavelength) / static_cast<double>(wavelengths_ - 1) - 1.0 : 0.0;
-    return {place.x(), place.y(), u, 2.0 * portions_[element].fraction / largest_ - 1.0};
+    return {place.x(), place.y(), u, 2.0 * fullness(element) - 1.0};
   }
+  /// Returns the portion of an element, divided by the largest portion.
+  double fullness(std::size_t element) const { return portions_[element].fraction / largest_; }
   /// Returns the position for two numbers from 0 to 1.
   Vec2 position(double u, double v) const { return lower_ + Vec2(u, v).cwiseProduct(upper_ - lower_); }
 
@@ -135,14 +137,19 @@ void ElementSample::add_stratum(const std::vector<ElementPortion>& portions, con
         sums = own;
       else
         sums += own;
-      stratum.unsampled += weight * weight;
+      stratum.deviations += std::pow(weight / scale.fullness(element), 2.0);
     }
   stratum.powers.resize(static_cast<Eigen::Index>(stratum.count), sums.size());
-  for (std::size_t k = 0; k < stratum.count; ++k)
-    stratum.powers.row(static_cast<Eigen::Index>(k)) =
-        terms(samples_[stratum.first + k].element, samples_[stratum.first + k].wavelength).transpose();
+  stratum.fractions.resize(static_cast<Eigen::Index>(stratum.count));
+  // Samples are weighted with the light on their elements. Readings of elements that receive little light deviate more.
+  for (std::size_t k = 0; k < stratum.count; ++k) {
+    const SampledElement& sample = samples_[stratum.first + k];
+    const auto row = static_cast<Eigen::Index>(k);
+    stratum.fractions[row] = scale.fullness(sample.element);
+    stratum.powers.row(row) = stratum.fractions[row] * terms(sample.element, sample.wavelength).transpose();
+  }
   stratum.inverse = stratum.powers.completeOrthogonalDecomposition().pseudoInverse();
-  const Eigen::VectorXd own_weights = stratum.inverse.transpose() * sums;
+  const Eigen::VectorXd own_weights = stratum.fractions.cwiseProduct(stratum.inverse.transpose() * sums);
   for (std::size_t k = 0; k < stratum.count; ++k)
     samples_[stratum.first + k].weight = own_weights[static_cast<Eigen::Index>(k)];
   strata_.push_back(std::move(stratum));
@@ -152,18 +159,22 @@ SampledSum ElementSample::sum(const std::vector<double>& readings) const {
   SampledSum sum;
   double variance = 0.0;
   for (const Stratum& stratum : strata_) {
-    Eigen::VectorXd own(static_cast<Eigen::Index>(stratum.count));
-    double squared_weights = 0.0;
-    for (std::size_t k = 0; k < stratum.count; ++k) {
-      const double weight = samples_[stratum.first + k].weight;
-      own[static_cast<Eigen::Index>(k)] = readings[stratum.first + k];
-      sum.value += weight * readings[stratum.first + k];
-      squared_weights += weight * weight;
+    const auto count = static_cast<Eigen::Index>(stratum.count);
+    Eigen::VectorXd own(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const std::size_t index = stratum.first + static_cast<std::size_t>(k);
+      own[k] = readings[index];
+      sum.value += samples_[index].weight * readings[index];
     }
     if (stratum.powers.size() == 0) continue;
+    own = own.cwiseProduct(stratum.fractions);
     const double squares = (own - stratum.powers * (stratum.inverse * own)).squaredNorm();
     const double degrees = std::max(1.0, static_cast<double>(stratum.powers.rows() - stratum.powers.cols()));
-    variance += squares / degrees * (squared_weights + stratum.unsampled);
+    double squared_weights = 0.0;
+    for (Eigen::Index k = 0; k < count; ++k)
+      squared_weights +=
+          std::pow(samples_[stratum.first + static_cast<std::size_t>(k)].weight / stratum.fractions[k], 2.0);
+    variance += squares / degrees * (squared_weights + stratum.deviations);
   }
   sum.std_error = std::sqrt(variance);
   return sum;

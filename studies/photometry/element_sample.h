@@ -47,9 +47,14 @@ class ElementSample {
   struct Stratum {
     std::size_t first = 0;  ///< index of the first sample
     std::size_t count = 0;
-    Eigen::MatrixXd powers;   ///< values of the polynomials' terms at the samples; empty if all elements are selected
-    Eigen::MatrixXd inverse;  ///< pseudo-inverse of `powers`
-    double unsampled = 0.0;   ///< sum of the squares of portion * weight
+    /// Values of the polynomials' terms at the samples, times the portion of the element divided by the largest
+    /// portion; empty if all elements are selected.
+    Eigen::MatrixXd powers;
+    Eigen::MatrixXd inverse;    ///< pseudo-inverse of `powers`
+    Eigen::VectorXd fractions;  ///< portions of the samples divided by the largest portion
+    /// Variance of the sum over the single deviations of all elements from the polynomials, relative to the variance of
+    /// `fractions` times a deviation.
+    double deviations = 0.0;
   };
   void add_stratum(const std::vector<raytrace::ElementPortion>& portions, const std::vector<double>& weights,
                    const std::vector<std::size_t>& elements, std::size_t max_count);

@@ -103,8 +103,7 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   WavelengthReading common;
   const std::unique_ptr<const raytrace::ElementScene> scene = elements.scene(element, to_source, light.optics.index);
-  if (!scene) {
-    // The light of an element without a tangent plane is missing in the reading.
+  if (!scene || !scene->is_lit) {
     for (const SharedDirection& one : directions) {
       const PhotometerSetting& setting = settings[one.index];
       common.per_sr.assign(setting.observation_deg.size(), 0.0);
@@ -112,7 +111,8 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
       common.map_per_sr.assign(setting.map_columns * setting.map_columns, 0.0);
       reading.pieces.push_back(common);
     }
-    reading.error.add_failure();
+    // The light of an element without a tangent plane is missing in the reading.
+    if (!scene) reading.error.add_failure();
     reading.is_complete = true;
     return reading;
   }

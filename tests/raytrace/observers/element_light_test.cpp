@@ -70,7 +70,7 @@ Returned returned_light(const Part& part, const Surface& surface, const Optics& 
   for (const ElementPortion& portion : light.portions(to_source, optics.index)) all.fraction += portion.fraction;
   for (std::size_t k = 0; k < light.element_count(); ++k) {
     const auto scene = light.scene(k, to_source, optics.index);
-    if (!scene) continue;
+    if (!scene || !scene->is_lit) continue;
     FarFieldPolicy policy;
     policy.wavelength_nm = kWaveNm;
     const Illumination illumination = illumination_of(*scene, to_source, kUnpolarised);
@@ -239,7 +239,7 @@ TEST(ElementLight, InclinedPlaneSteersNothing) {
     double power = 0.0;
     for (std::size_t k = 0; k < light.element_count(); ++k) {
       const auto scene = light.scene(k, to_source, kPmma);
-      if (!scene) continue;
+      if (!scene || !scene->is_lit) continue;
       const Illumination illumination = illumination_of(*scene, to_source, kUnpolarised);
       trace_element(*scene, pmma(), illumination, {0.5}, beams(), nullptr, [&](const ReturnedBeam& beam) {
         for (const DirectionSample& sample : spread_directions(beam))
