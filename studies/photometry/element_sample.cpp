@@ -129,16 +129,17 @@ void ElementSample::add_stratum(const std::vector<ElementPortion>& portions, con
     return terms_at(scale.at(element, wavelength), is_border, stratum.count);
   };
   Eigen::VectorXd sums;
-  for (const std::size_t element : elements)
+  for (const std::size_t element : elements) {
     for (std::size_t w = 0; w < weights.size(); ++w) {
-      const double weight = portions[element].fraction * weights[w];
-      const Eigen::VectorXd own = weight * terms(element, w);
+      const Eigen::VectorXd own = portions[element].fraction * weights[w] * terms(element, w);
       if (sums.size() == 0)
         sums = own;
       else
         sums += own;
-      stratum.deviations += std::pow(weight / scale.fullness(element), 2.0);
     }
+    // The deviations of one element at different wavelengths are assumed to be equal.
+    stratum.deviations += std::pow(portions[element].fraction * all_weights / scale.fullness(element), 2.0);
+  }
   stratum.powers.resize(static_cast<Eigen::Index>(stratum.count), sums.size());
   stratum.fractions.resize(static_cast<Eigen::Index>(stratum.count));
   // Samples are weighted with the light on their elements. Readings of elements that receive little light deviate more.
