@@ -39,7 +39,7 @@ void count_corner(std::vector<CountedCorner>& corners, const Vec3& at_mm, double
 }
 
 /// Sets the points of an element from its facets. Returns false if it has no retro facet.
-bool find_points(const Part& part, PlacedElement& element) {
+bool find_points(const Part& part, PartElement& element) {
   const Placement& placement = part.placements[element.placement];
   const SurfacePatch& patch = part.patches[placement.patch];
   std::vector<CountedCorner> corners;
@@ -232,20 +232,20 @@ void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& 
 }
 
 /// Returns true if the boxes of a cell and of an element, in plan, are at most `reach_mm` apart along both axes.
-bool is_within_reach(const Vec3& lower, const Vec3& upper, const PlacedElement& element, double reach_mm) {
+bool is_within_reach(const Vec3& lower, const Vec3& upper, const PartElement& element, double reach_mm) {
   return ((lower - element.upper_mm).head<2>().array() <= reach_mm).all() &&
          ((element.lower_mm - upper).head<2>().array() <= reach_mm).all();
 }
 
 }  // namespace
 
-std::vector<PlacedElement> placed_elements(const Part& part) {
-  std::vector<PlacedElement> elements;
+std::vector<PartElement> part_elements(const Part& part) {
+  std::vector<PartElement> elements;
   for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
     const SurfacePatch& patch = part.patches[part.placements[p].patch];
-    std::map<std::uint64_t, PlacedElement> by_id;
+    std::map<std::uint64_t, PartElement> by_id;
     for (std::uint32_t c = 0; c < patch.cells.size(); ++c) {
-      PlacedElement& element = by_id[part.element_id(patch, patch.cells[c])];
+      PartElement& element = by_id[part.element_id(patch, patch.cells[c])];
       element.placement = p;
       element.cells.push_back(c);
     }
@@ -255,7 +255,7 @@ std::vector<PlacedElement> placed_elements(const Part& part) {
   return elements;
 }
 
-ElementExcerpt excerpt_around(const Part& part, const PlacedElement& element, const Eigen::Isometry3d& frame_from_part,
+ElementExcerpt excerpt_around(const Part& part, const PartElement& element, const Eigen::Isometry3d& frame_from_part,
                               double thickness_mm, double reach_mm) {
   ExcerptBuilder builder(part, frame_from_part, thickness_mm);
   builder.add(part.placements[element.placement], element.cells, true);

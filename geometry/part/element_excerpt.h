@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 
 /// One element of a finite part: a placement of a patch and the cells of the element in this patch.
-struct PlacedElement {
+struct PartElement {
   std::uint32_t placement = 0;
   std::vector<std::uint32_t> cells;  ///< indices into SurfacePatch::cells
   /// Point of the part frame where the largest number of retro facets meet: the apex of a cube corner, the middle of
@@ -23,7 +23,7 @@ struct PlacedElement {
 };
 
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
-std::vector<PlacedElement> placed_elements(const Part& part);
+std::vector<PartElement> part_elements(const Part& part);
 
 /// An element and its surroundings, in a frame of their own.
 struct ElementExcerpt {
@@ -41,7 +41,7 @@ struct ElementExcerpt {
 /// \param frame_from_part maps the part frame to the frame of the excerpt
 /// \param thickness_mm height of the entrance face in the frame of the excerpt
 /// \pre the part is finite and its outline is convex
-ElementExcerpt excerpt_around(const Part& part, const PlacedElement& element, const Eigen::Isometry3d& frame_from_part,
+ElementExcerpt excerpt_around(const Part& part, const PartElement& element, const Eigen::Isometry3d& frame_from_part,
                               double thickness_mm, double reach_mm);
 
 }  // namespace retrace::geometry

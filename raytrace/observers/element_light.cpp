@@ -13,7 +13,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::ElementExcerpt, geometry::PlacedElement, geometry::Polygon;
+using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
 // Number of nearest elements that may bound the portion of an element.
 constexpr std::size_t kMaxNeighbours = 48;
@@ -52,7 +52,7 @@ Polygon as_polygon(const FlatPolygon& polygon) {
 
 /// Returns the area of the tangent plane through which the light enters that first meets an element, if there are no
 /// other elements.
-FlatPolygon shadow_of(const PlacedElement& element, const TangentPlane& plane, const Vec3& inside_direction) {
+FlatPolygon shadow_of(const PartElement& element, const TangentPlane& plane, const Vec3& inside_direction) {
   const Vec3 own = plane.frame_from_part * inside_direction;
   std::vector<Vec2> points;
   for (const Vec3& corner : element.corners_mm) {
@@ -89,13 +89,13 @@ struct ElementLight::Bounds {
 };
 
 ElementLight::ElementLight(const geometry::Part& part, std::shared_ptr<const geometry::EntranceSurface> surface)
-    : part_(part), surface_(std::move(surface)), elements_(geometry::placed_elements(part)) {
+    : part_(part), surface_(std::move(surface)), elements_(geometry::part_elements(part)) {
   top_mm_ = geometry::entrance_range(surface_, part.outline).highest_mm;
   area_mm2_ = geometry::area(part.outline);
   diameter_mm_ = geometry::bounding_box(part.outline).size().norm();
   std::vector<std::uint32_t> others(elements_.size());
   std::iota(others.begin(), others.end(), 0U);
-  for (const PlacedElement& element : elements_) {
+  for (const PartElement& element : elements_) {
     const auto distance = [&](std::uint32_t k) {
       return (elements_[k].apex_mm - element.apex_mm).head<2>().squaredNorm();
     };
@@ -173,7 +173,7 @@ std::vector<ElementPortion> ElementLight::portions(const Vec3& to_source, double
 
 std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, const Vec3& to_source,
                                                         double index) const {
-  const PlacedElement& own = elements_[element];
+  const PartElement& own = elements_[element];
   const std::optional<TangentPlane> plane = plane_of(element, to_source, index);
   if (!plane) return nullptr;
   auto scene = std::make_unique<ElementScene>();

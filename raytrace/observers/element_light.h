@@ -90,7 +90,7 @@ class ElementLight {
 
   const geometry::Part& part_;
   std::shared_ptr<const geometry::EntranceSurface> surface_;
-  std::vector<geometry::PlacedElement> elements_;
+  std::vector<geometry::PartElement> elements_;
   std::vector<std::vector<std::uint32_t>> neighbours_;  ///< for each element, the nearest elements
   double top_mm_ = 0.0;
   double area_mm2_ = 0.0;

@@ -196,14 +196,14 @@ void Photometer::add_surface_reflection(const PhotometerSetting& setting, const 
                                       towards_receiver(frame, setting.observation_deg[k]), kernel_, reflectance);
   std::optional<raytrace::DirectionGrid> grid;
   if (setting.map_columns > 0) grid = grid_of_map(setting, request_.window_deg);
-  visit_reflected(elements.surface(), outline, elements.top_mm(), frame.to_source, kReflectionColumns, reflectance,
-                  [&](const Vec3& direction, double power) {
-                    if (is_within(direction, frame.to_source, design_.detector.acceptance_half_angle_deg.back()))
-                      sum.rre += power;
-                    if (!grid) return;
-                    const std::optional<std::size_t> bin = grid->bin_of(frame.angles_rad(direction));
-                    if (bin) sum.map_per_sr[*bin] += power / grid->solid_angle_sr(*bin);
-                  });
+  raytrace::visit_reflected(
+      elements.surface(), outline, elements.top_mm(), frame.to_source, kReflectionColumns, reflectance,
+      [&](const Vec3& direction, double power) {
+        if (is_within(direction, frame.to_source, design_.detector.acceptance_half_angle_deg.back())) sum.rre += power;
+        if (!grid) return;
+        const std::optional<std::size_t> bin = grid->bin_of(frame.angles_rad(direction));
+        if (bin) sum.map_per_sr[*bin] += power / grid->solid_angle_sr(*bin);
+      });
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface(
