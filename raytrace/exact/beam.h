@@ -15,6 +15,7 @@
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/faces/formed_facet.h"
 #include "raytrace/light/coherent_light.h"
+#include "surface_models/facet_form.h"
 #include "surface_models/scatter/scatter_event.h"
 
 namespace retrace::raytrace {
@@ -102,6 +103,8 @@ struct TexturedHit {
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
   FacetFrame frame;  ///< frame in which the form of the facet is defined
+  /// Form of the surface, which must outlive the beam. Null: the form of all retro facets (Optics::facet_form).
+  const surface_models::FacetForm* form = nullptr;
   /// Change of the optical path per height of the form. Heights that point out of the part are positive. The value is 0
   /// for facets without form.
   double path_per_height = 0.0;

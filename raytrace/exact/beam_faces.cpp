@@ -103,6 +103,10 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
     return;
   }
   const bool is_entrance = role == FacetRole::entrance;
+  if (!is_entrance && step.scene.policy.ends_at_sides) {
+    step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
+    return;
+  }
   const Vec3 against = -plane.normal;
   const double cos_incidence = plane.normal.dot(direction);
   const double ratio = role == FacetRole::border_wall ? optics.ratio_at_back(true) : optics.index;

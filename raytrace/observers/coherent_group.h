@@ -10,12 +10,14 @@
 
 #include "raytrace/light/coherent_light.h"
 #include "raytrace/observers/polygon_transform.h"
+#include "surface_models/facet_form.h"
 #include "surface_models/scatter/scatter_event.h"
 
 namespace retrace::raytrace {
 
-/// A facet with a texture or a form that light has met before it leaves the entrance face at a point r. The light met
-/// the facet at constant_mm + slope r. The other data describe the phase shift by the heights of the facet.
+/// A facet with a texture or a form, or a curved entrance surface, that light has met before it leaves the entrance
+/// face at a point r. The light met the facet at constant_mm + slope r. The other data describe the phase shift by the
+/// heights of the facet.
 struct FieldHit {
   Vec3 normal = Vec3::UnitZ();  ///< normal of the facet's plane normal . p = offset_mm
   double offset_mm = 0.0;
@@ -27,6 +29,8 @@ struct FieldHit {
   Vec2 form_constant_mm = Vec2::Zero();
   Eigen::Matrix2d form_slope = Eigen::Matrix2d::Zero();
   double path_per_height = 0.0;
+  /// Form of the facet or of the entrance surface; not null if `path_per_height` is not 0. It must outlive the hit.
+  const surface_models::FacetForm* form = nullptr;
 };
 
 /// A plane wave through a convex polygon of the entrance face. It is a part of the field that a cell returns.
@@ -51,6 +55,7 @@ struct CoherentGroup {
 
   double power() const;           ///< returns the power of all copies
   double specular_power() const;  ///< returns the power of the mean field of all copies
+  bool has_form() const;          ///< returns true if forms change the phases of the light
 };
 
 }  // namespace retrace::raytrace

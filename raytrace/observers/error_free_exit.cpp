@@ -76,24 +76,33 @@ Vec2 onto_face(const Vec3& point, const Vec3& direction) {
 
 }  // namespace
 
-std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source, const Vec2& cell_mm) {
+std::optional<PathIsometry> path_isometry(const ReturnedBeam& beam, const Vec3& to_source) {
   const Eigen::Affine2d& entry_from_exit = beam.entry_from_exit;
   if (std::abs(entry_from_exit.linear().determinant()) < kMinDeterminant) return std::nullopt;
   const Vec3 entering = inside(-to_source.head<2>(), beam.index, -1.0);
   const Vec3 leaving = inside(beam.direction.head<2>(), beam.index, 1.0);
   const Matrix3d m = product_of_reflections(entry_from_exit.linear().inverse(), entering, leaving);
   if (((m.transpose() * m) - Matrix3d::Identity()).norm() > kIsometryTolerance) return std::nullopt;
-  const std::optional<Involution> ideal = nearest_involution(m);
-  if (!ideal) return std::nullopt;
-  const Vec3 leaving_ideal = ideal->matrix * entering;
-  if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
-
   // Let P be the point at the distance `length_mm` from the entry point along `entering`. Without reflections, the
   // light would reach P. The isometry x -> M x + t maps P to the exit point. The light whose exit point is the origin
   // determines t.
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
-  const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
+  return PathIsometry{m, -length_mm * leaving - m.leftCols<2>() * entered};
+}
+
+std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec3& to_source, const Vec2& cell_mm) {
+  const std::optional<PathIsometry> path = path_isometry(beam, to_source);
+  if (!path) return std::nullopt;
+  const Matrix3d& m = path->matrix;
+  const Vec3& t = path->shift_mm;
+  const Vec3 entering = inside(-to_source.head<2>(), beam.index, -1.0);
+  const Vec3 leaving = inside(beam.direction.head<2>(), beam.index, 1.0);
+  const std::optional<Involution> ideal = nearest_involution(m);
+  if (!ideal) return std::nullopt;
+  const Vec3 leaving_ideal = ideal->matrix * entering;
+  if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
+
   // The apex is a fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its
   // coordinates along the other axes are arbitrary, and those of the cell's position are used.
   const auto& axes = ideal->reversed;
@@ -110,7 +119,7 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   from_entry.translation() = exit_of(Vec2::Zero());
   for (const Eigen::Index k : {0, 1}) from_entry.linear().col(k) = exit_of(Vec2::Unit(k)) - from_entry.translation();
   from_entry.makeAffine();
-  exit.from_exit = from_entry * entry_from_exit;
+  exit.from_exit = from_entry * beam.entry_from_exit;
   exit.phase_change_mm = -beam.index * apex.z() / leaving_ideal.z() * (1.0 - leaving.dot(leaving_ideal));
   return exit;
 }

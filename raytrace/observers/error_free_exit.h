@@ -28,6 +28,19 @@ struct ErrorFreeExit {
   double phase_change_mm = 0.0;
 };
 
+/// Combined effect of the reflections of a path: x -> matrix x + shift_mm, with an orthogonal matrix. It maps the point
+/// and the direction that the light would have without reflections to its actual point and direction. Coordinates are
+/// relative to the part's centre, and the entrance face is the plane z = 0.
+struct PathIsometry {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  Vec3 shift_mm = Vec3::Zero();
+};
+
+/// Computes the isometry of a returned beam behind a plane entrance face. Returns nothing if light is refracted at the
+/// back surface, or leaves almost parallel to the entrance face.
+/// \param to_source unit vector towards the source
+std::optional<PathIsometry> path_isometry(const ReturnedBeam& beam, const Vec3& to_source);
+
 /// Computes the exit of a beam without errors of angle.
 /// \param to_source unit vector towards the source
 /// \param cell_mm position of the cell, relative to the part's centre

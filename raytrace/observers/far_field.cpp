@@ -72,6 +72,13 @@ double CoherentGroup::specular_power() const {
   return copies * sum;
 }
 
+bool CoherentGroup::has_form() const {
+  for (const FieldPolygon& p : polygons)
+    for (const FieldHit& hit : p.hits)
+      if (hit.path_per_height != 0.0) return true;
+  return false;
+}
+
 double FarField::diffracted_power() const {
   double sum = 0.0;
   for (const CoherentGroup& group : groups_) sum += group.specular_power();

@@ -220,6 +220,7 @@ FarFieldCollector::CollectedBeam FarFieldCollector::moved_to_first_copy(const Re
     at_home.slope = hit.slope.leftCols<2>() * exit_from_home.linear();
     at_home.phase = hit.phase;
     at_home.path_per_height = hit.path_per_height;
+    at_home.form = hit.form != nullptr ? hit.form : policy_.form;
     Eigen::Matrix<double, 2, 3> axes;
     axes << hit.frame.horizontal.transpose(), hit.frame.down.transpose();
     at_home.form_constant_mm = axes * (at_home.constant_mm + moved - hit.frame.origin_mm);
@@ -400,8 +401,8 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
     const bool is_narrow = field_.wavelength_mm_ >= policy_.finest_detail_rad * group.extent_mm;
     const bool is_to_be_diffracted = is_strong && is_narrow;
     left -= group.power();
-    const bool is_formed = is_strong && policy_.form != nullptr;
-    CoherentGroup bent = is_formed ? formed(group, *policy_.form, how_finely) : CoherentGroup{};
+    const bool is_formed = is_strong && (policy_.form != nullptr || group.has_form());
+    CoherentGroup bent = is_formed ? formed(group, how_finely) : CoherentGroup{};
     const std::size_t more = is_formed ? bent.polygons.size() : group.polygons.size();
     const bool is_within_budget = polygons + more <= policy_.max_polygons;
     if (is_strong && is_within_budget) field_.scattered_.add(group, is_narrow);

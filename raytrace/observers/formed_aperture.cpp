@@ -18,7 +18,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2, surface_models::FacetForm;
+using geometry::Vec2;
 
 // Number of points along an edge of the triangles over which phases are averaged. The average is exact for quadratic
 // phases.
@@ -28,23 +28,25 @@ constexpr double kOneCorner = 1e-12;
 // Minimum relative power in the formula for the subdivision. Weaker polygons are subdivided as if they had this power.
 constexpr double kMinRelativePower = 1e-4;
 
-/// Phase that the forms of facets add to the light of a polygon, as a function of the point where the light leaves the
-/// entrance face.
+/// Phase that the forms of surfaces add to the light of a polygon, as a function of the point where the light leaves
+/// the entrance face.
 struct FormPhase {
   const std::vector<FieldHit>& hits;
-  const FacetForm& form;
   double wave_number = 0.0;
 
   double at(const Vec2& r) const {
     double path_mm = 0.0;
     for (const FieldHit& hit : hits)
-      path_mm += hit.path_per_height * form.height_mm(hit.form_constant_mm + hit.form_slope * r);
+      if (hit.path_per_height != 0.0)
+        path_mm += hit.path_per_height * hit.form->height_mm(hit.form_constant_mm + hit.form_slope * r);
     return wave_number * path_mm;
   }
   Vec2 gradient(const Vec2& r) const {
     Vec2 sum = Vec2::Zero();
     for (const FieldHit& hit : hits)
-      sum += hit.path_per_height * hit.form_slope.transpose() * form.slope(hit.form_constant_mm + hit.form_slope * r);
+      if (hit.path_per_height != 0.0)
+        sum += hit.path_per_height * hit.form_slope.transpose() *
+               hit.form->slope(hit.form_constant_mm + hit.form_slope * r);
     return wave_number * sum;
   }
 };
@@ -150,15 +152,14 @@ FlatPolygons cut_across(const FlatPolygon& polygon, const Vec2& direction, std::
 
 class Cutter {
  public:
-  Cutter(CoherentGroup& made, const FacetForm& form, const FormedPolicy& policy)
-      : made_(made), form_(form), policy_(policy) {}
+  Cutter(CoherentGroup& made, const FormedPolicy& policy) : made_(made), policy_(policy) {}
 
   void cut(const FieldPolygon& whole) {
     if (std::ranges::none_of(whole.hits, [](const FieldHit& hit) { return hit.path_per_height != 0.0; })) {
       add(whole);
       return;
     }
-    const FormPhase phase{whole.hits, form_, policy_.wave_number};
+    const FormPhase phase{whole.hits, policy_.wave_number};
     const double share = std::max(kMinRelativePower, made_.copies * whole.power / policy_.strongest);
     const double widened = share < 1.0 ? 1.0 / std::pow(share, 0.25) : 1.0;
     const double merge_mm = kOneCorner * whole.transform.size_mm();
@@ -207,15 +208,14 @@ class Cutter {
   }
 
   CoherentGroup& made_;
-  const FacetForm& form_;
   const FormedPolicy& policy_;
 };
 
 }  // namespace
 
-CoherentGroup formed(const CoherentGroup& group, const FacetForm& form, const FormedPolicy& policy) {
+CoherentGroup formed(const CoherentGroup& group, const FormedPolicy& policy) {
   CoherentGroup made{{}, group.copies, group.extent_mm, group.replicate};
-  Cutter cutter(made, form, policy);
+  Cutter cutter(made, policy);
   for (const FieldPolygon& polygon : group.polygons) cutter.cut(polygon);
   return made;
 }

@@ -160,6 +160,7 @@ struct ScatteredField::Shared {
     const double log_means = -0.5 * (here.phase_variance + there.phase_variance);
     for (const FieldHit& a : here.hits)
       for (const FieldHit& b : there.hits) {
+        if (a.phase.variance() == 0.0 || b.phase.variance() == 0.0) continue;
         if ((a.normal - b.normal).norm() > kOnePlane || std::abs(a.offset_mm - b.offset_mm) > kOneOffset * shortest_mm)
           continue;
         const Eigen::Matrix2d square = b.slope.transpose() * b.slope;

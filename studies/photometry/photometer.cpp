@@ -86,6 +86,17 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
   }
 }
 
+/// Removes the obstacle of a curved entrance surface if its diffraction can be computed behind tangent planes. This
+/// needs an exact surface instead of a mesh.
+/// \param model null: not known yet; an exact surface is assumed
+void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySettings& request,
+                          raytrace::EngineFacts& facts) {
+  const bool is_mesh = model != nullptr && model->entrance &&
+                       !std::holds_alternative<std::shared_ptr<const geometry::EntranceSurface>>(*model->entrance);
+  if (!is_mesh && request.diffraction && !(model != nullptr && model->part.period_mm))
+    facts.has_curved_entrance = false;
+}
+
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
 /// meshes. Also returns 0 for curved entrance faces, because they divide the light into cells of their own.
 double width_of_cells_mm(const design::Design& design) {
@@ -175,7 +186,9 @@ Photometer::Photometer(const design::Design& design, const PhotometrySettings& r
     : design_(with_dye(design, request.dye_absorption_per_mm)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_);
-  check_engine(design_, design::engine_facts(design_, nullptr), request.engine);
+  raytrace::EngineFacts known = design::engine_facts(design_, nullptr);
+  allow_tangent_planes(nullptr, request, known);
+  check_engine(design_, known, request.engine);
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
     for (const design::SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
@@ -188,6 +201,7 @@ Photometer::Photometer(const design::Design& design, const PhotometrySettings& r
   }
   facts_ = design::engine_facts(design_, &model_.optics);
   facts_.needs_phases = request.diffraction;
+  allow_tangent_planes(&model_, request, facts_);
   check_engine(design_, facts_, request.engine);
   if (raytrace::is_exact(request.engine, facts_)) tracing_ = Tracing::beams;
 }
@@ -217,13 +231,15 @@ std::string Photometer::engine_name() const {
 NoDiffraction Photometer::why_undiffracted() const {
   if (!request_.diffraction) return Undiffracted::not_requested;
   if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts_)) return *obstacle;
-  if (is_exact()) return Undiffracted::unequal_cells;
-  return request_.engine == raytrace::Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
+  if (is_exact()) return model_.entrance ? Undiffracted::strong_curvature : Undiffracted::unequal_cells;
+  if (request_.engine != raytrace::Engine::automatic) return Undiffracted::monte_carlo;
+  return model_.entrance ? Undiffracted::strong_curvature : Undiffracted::too_many_beams;
 }
 
 void Photometer::ignore_diffraction() {
   request_.diffraction = false;
   facts_.needs_phases = false;
+  facts_.has_curved_entrance = model_.entrance.has_value();
   if (tracing_ != Tracing::rays)
     tracing_ = raytrace::is_exact(request_.engine, facts_) ? Tracing::beams : Tracing::rays;
 }
@@ -242,8 +258,8 @@ std::vector<double> Photometer::wavelengths_nm() const {
   return all;
 }
 
-PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
-                                         const std::vector<WavelengthReading>& pieces) const {
+PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces,
+                                         const std::vector<double>& weights) const {
   PhotometerReading reading;
   const raytrace::SourceAngles source = raytrace::source_angles(frame_of(setting).to_source);
   PhotometricDirection& at = reading.direction;
@@ -256,12 +272,12 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
   double variance = 0.0;
   double beyond_budget = 0.0;
   for (std::size_t w = 0; w < pieces.size(); ++w) {
-    at.rre += weights_[w] * pieces[w].rre;
-    at.truncated += weights_[w] * pieces[w].truncated;
-    variance += std::pow(weights_[w] * pieces[w].std_error, 2.0);
-    beyond_budget += weights_[w] * pieces[w].beyond_budget;
+    at.rre += weights[w] * pieces[w].rre;
+    at.truncated += weights[w] * pieces[w].truncated;
+    variance += std::pow(weights[w] * pieces[w].std_error, 2.0);
+    beyond_budget += weights[w] * pieces[w].beyond_budget;
     if (pieces[w].split) at.split = pieces[w].split;
-    for (std::size_t k = 0; k < map.size(); ++k) map[k] += weights_[w] * pieces[w].map_per_sr[k];
+    for (std::size_t k = 0; k < map.size(); ++k) map[k] += weights[w] * pieces[w].map_per_sr[k];
   }
   at.std_error = std::sqrt(variance);
   reading.lacks_diffraction =
@@ -274,9 +290,9 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
     // Linear sum instead of a root of squares, because the missing light is similar for all wavelengths.
     double missing = 0.0;
     for (std::size_t w = 0; w < pieces.size(); ++w) {
-      per_sr += weights_[w] * pieces[w].per_sr[k];
-      if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];
-      squares += std::pow(weights_[w] * pieces[w].error_per_sr[k], 2.0);
+      per_sr += weights[w] * pieces[w].per_sr[k];
+      if (!pieces[w].missing_per_sr.empty()) missing += weights[w] * pieces[w].missing_per_sr[k];
+      squares += std::pow(weights[w] * pieces[w].error_per_sr[k], 2.0);
     }
     const PhotometricGeometry geometry = geometry_of(setting, setting.observation_deg[k]);
     reading.r_a.push_back(per_sr * cos_beta);
@@ -314,6 +330,7 @@ std::vector<EquivalentDirections> Photometer::group_equivalent_settings(
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
     const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
+  if (uses_tangent_planes()) return measure_behind_surface(settings, progress, cancel);
   const std::size_t wavelengths = model_.spectral.size();
   std::vector<std::vector<WavelengthReading>> pieces(settings.size(), std::vector<WavelengthReading>(wavelengths));
   if (is_exact()) {
@@ -334,7 +351,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
   for (std::size_t k = 0; k < settings.size(); ++k) {
     for (const WavelengthReading& piece : pieces[k])
       if (!piece.complete) return std::nullopt;
-    readings.push_back(reading_of(settings[k], pieces[k]));
+    readings.push_back(reading_of(settings[k], pieces[k], weights_));
   }
   return readings;
 }

@@ -13,6 +13,7 @@
 #include "design/optical_model.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"
+#include "raytrace/observers/tangent_error.h"
 #include "studies/photometry/photometry.h"
 #include "studies/rre/equivalent_directions.h"
 
@@ -51,6 +52,8 @@ struct PhotometerReading {
   PhotometricDirection direction;
   std::vector<double> map_r_a;
   bool lacks_diffraction = false;  ///< true: diffraction is significant but not included in the reading
+  /// Model of a curved entrance surface; empty behind a plane entrance face, and for readings by rays.
+  std::optional<EntranceModel> entrance_model;
 };
 
 /// Measures the coefficients of retroreflection of a design, as a goniophotometer does. Each direction of incidence is
@@ -243,7 +246,27 @@ class Photometer {
   /// Returns the settings with the reference axis of the design.
   /// \throw InputError if the light of a setting comes from behind the plane z = 0
   std::vector<PhotometerSetting> with_reference_axis(std::vector<PhotometerSetting> settings) const;
-  PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces) const;
+  /// \param weights weights of the elements of `pieces`
+  PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces,
+                               const std::vector<double>& weights) const;
+  /// Returns true if light is traced as beams behind tangent planes of a curved entrance surface.
+  bool uses_tangent_planes() const { return is_exact() && model_.entrance.has_value(); }
+  /// Light of one sampled element at one wavelength, for all settings of a direction of light.
+  struct ElementReading;
+  /// Measures all settings behind a curved entrance surface by beams at a sample of the elements. Returns nothing if
+  /// the measurement was cancelled.
+  std::optional<std::vector<PhotometerReading>> measure_behind_surface(const std::vector<PhotometerSetting>& settings,
+                                                                       Progress* progress,
+                                                                       const Cancellation* cancel) const;
+  ElementReading measure_element(const std::vector<PhotometerSetting>& settings, const EquivalentDirections& directions,
+                                 const raytrace::ElementLight& elements, std::size_t element, std::size_t wavelength,
+                                 bool compares_rays, const Cancellation* cancel) const;
+  /// Adds the light that the curved entrance surface reflects at its outer side to the sum over all wavelengths.
+  void add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
+                              const raytrace::ElementLight& elements, WavelengthReading& sum) const;
+  /// Returns the transmittance of the body at one wavelength, along the usual path of returned light.
+  double body_transmittance(std::size_t wavelength) const;
+  std::size_t max_element_samples(const std::vector<PhotometerSetting>& settings) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;

@@ -201,6 +201,8 @@ std::string text_of(const NoDiffraction& reason) {
   switch (std::get<Undiffracted>(reason)) {
     case Undiffracted::not_requested: return "it was not requested";
     case Undiffracted::unequal_cells: return "the cells differ too much to compute the diffraction of each cell";
+    case Undiffracted::strong_curvature:
+      return "the entrance surface is curved too strongly within the light of one element";
     case Undiffracted::too_many_beams: return "the exact engine would need too many beams";
     case Undiffracted::monte_carlo: return "the Monte-Carlo engine does not compute it";
   }
@@ -440,6 +442,19 @@ bool add_colour(const Photometer& photometer, Progress* progress, const Cancella
   return result.colour.has_value();
 }
 
+/// Returns the model of a curved entrance surface with the largest differences of all readings.
+std::optional<EntranceModel> worst_model(const std::vector<PhotometerReading>& readings) {
+  std::optional<EntranceModel> worst;
+  for (const PhotometerReading& reading : readings) {
+    if (!reading.entrance_model) continue;
+    if (!worst) worst = reading.entrance_model;
+    worst->path_rms_waves = std::max(worst->path_rms_waves, reading.entrance_model->path_rms_waves);
+    worst->angle_rms_arcmin = std::max(worst->angle_rms_arcmin, reading.entrance_model->angle_rms_arcmin);
+    worst->max_angle_arcmin = std::max(worst->max_angle_arcmin, reading.entrance_model->max_angle_arcmin);
+  }
+  return worst;
+}
+
 }  // namespace
 
 PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* cancel) const {
@@ -463,6 +478,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
+    result.entrance_model = worst_model(*readings);
     result.readings = readings_of_points(request, plan, {readings->begin(), readings->end()});
     result.measured = smallest_readings(result.readings);
     result.points = result.measured;

@@ -183,12 +183,24 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
+/// Model of tangent planes for a curved entrance surface (docs/theory/fronts.md), and its differences from rays that
+/// are refracted at the exact surface.
+struct EntranceModel {
+  std::size_t elements = 0;           ///< number of elements of the part that receive light
+  std::size_t traced_elements = 0;    ///< number of elements that were traced; the others follow by interpolation
+  double path_rms_waves = 0.0;        ///< root mean square difference of optical paths, in wavelengths
+  double angle_rms_arcmin = 0.0;      ///< root mean square angle between the directions of returned light
+  double max_angle_arcmin = 0.0;      ///< maximum angle between these directions
+  double allowed_angle_arcmin = 0.0;  ///< readings lack diffraction if `max_angle_arcmin` is above this limit
+};
+
 /// Reasons, other than obstacles of the exact engine, why photometric readings do not include diffraction.
 enum class Undiffracted {
   not_requested,
-  unequal_cells,   ///< the cells of the part differ too much from each other
-  too_many_beams,  ///< the exact engine exceeds its budget of beams
-  monte_carlo      ///< the request selects Monte Carlo, which traces rays without phases
+  unequal_cells,     ///< the cells of the part differ too much from each other
+  strong_curvature,  ///< the entrance surface deviates too much from its tangent planes within an element
+  too_many_beams,    ///< the exact engine exceeds its budget of beams
+  monte_carlo        ///< the request selects Monte Carlo, which traces rays without phases
 };
 /// Reason why photometric readings do not include diffraction.
 using NoDiffraction = std::variant<Undiffracted, raytrace::Obstacle>;
@@ -239,6 +251,9 @@ struct PhotometryResult {
   std::string engine;
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
+  /// Model of a curved entrance surface, with the largest differences of all directions; empty for a plane entrance
+  /// face and for rays.
+  std::optional<EntranceModel> entrance_model;
   std::vector<PhotometricPoint> points;
   std::vector<PhotometricPoint> measured;  ///< readings at the test points, before lower bounds replaced some of them
   /// All readings of each test point, one for each measured angle V and each rotation of the part. Their minimum is the

@@ -297,6 +297,86 @@ TEST_F(Entrance, PhotometryTakesIt) {
   }
 }
 
+/// Returns a design of cube corners of 3 mm behind the turned surface `lens.toml`.
+std::string cubes(double error_arcmin, const std::string& front = kFront) {
+  return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 3\n[array]\narrangement = \"honeycomb\"\nx_length_mm = "
+         "16\ny_length_mm = 12\n[surface]\ndihedral_error_arcmin = " +
+         std::to_string(error_arcmin) + "\n[body]\nthickness_mm = 2.5\nrefractive_index = 1.4917\n" + front;
+}
+
+class CurvedPhotometry : public Entrance {
+ protected:
+  Json measure(const std::string& design, Arguments more, int code) {
+    folder_.write("design.toml", design);
+    folder_.write("limits.csv",
+                  "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
+                  "S,,red,0.2,0,0,1,cd/lx/m2,read\nS,,red,0.4,10,0,1,cd/lx/m2,read\n");
+    Arguments all = {
+        "photometry", "design.toml", "--standard=limits.csv", "--area-cm2=2", "--light=design", "--no-advice", "--json",
+        "-"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = retrace(folder_, all);
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return Json::parse(outcome.out);
+  }
+};
+
+TEST_F(CurvedPhotometry, HasAVerdictBehindALens) {
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -400\n", {}, 11.0));
+  const Json json = measure(cubes(0.0), {}, 0);
+  EXPECT_EQ(json["verdict"], "pass");
+  EXPECT_EQ(json["engine"], "exact");
+  EXPECT_EQ(json["diffraction"], true);
+  const Json& model = json["entrance_model"];
+  EXPECT_EQ(model["method"], "tangent_planes");
+  EXPECT_GT(model["elements"].get<int>(), 20);
+  EXPECT_LT(model["max_angle_arcmin"].get<double>(), model["allowed_angle_arcmin"].get<double>());
+  EXPECT_NEAR(model["allowed_angle_arcmin"].get<double>(), 1.0, 1e-9);
+  for (const Json& point : json["points"])
+    EXPECT_LT(point["std_error_mcd_per_lx"].get<double>(), 0.05 * point["value_mcd_per_lx"].get<double>());
+}
+
+// Over wide discs, diffraction hardly matters. Beams behind tangent planes then agree with rays through the surface.
+TEST_F(CurvedPhotometry, AgreesWithRaysOverWideDiscs) {
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -300\n", {}, 11.0));
+  const Arguments wide = {"--source-arcmin=60", "--receiver-arcmin=60", "--window-deg=3"};
+  const Json beams = measure(cubes(1.0), wide, 0);
+  Arguments by_rays = wide;
+  by_rays.insert(by_rays.end(), {"--engine=montecarlo", "--samples=262144"});
+  const Json rays = measure(cubes(1.0), by_rays, 0);
+  EXPECT_EQ(rays["engine"], "embree");
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double value = rays["points"][k]["value_mcd_per_lx"].get<double>();
+    const double error = rays["points"][k]["std_error_mcd_per_lx"].get<double>() +
+                         beams["points"][k]["std_error_mcd_per_lx"].get<double>();
+    EXPECT_NEAR(beams["points"][k]["value_mcd_per_lx"].get<double>(), value, 2.0 * error + 0.02 * value) << k;
+    const double rre = rays["directions"][k]["rre"].get<double>();
+    EXPECT_NEAR(beams["directions"][k]["rre"].get<double>(), rre, 0.02 * rre) << k;
+  }
+}
+
+TEST_F(CurvedPhotometry, StaysUndeterminedWithoutTangentPlanes) {
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -400\n", {}, 11.0));
+  const Arguments few = {"--samples=4096"};
+  const Json plain = measure(cubes(0.0), {"--samples=4096", "--no-diffraction"}, 1);
+  EXPECT_EQ(plain["verdict"], "undetermined");
+  EXPECT_EQ(plain["engine"], "embree");
+  EXPECT_FALSE(plain.contains("entrance_model"));
+  // A strongly curved surface deviates too much from its tangent planes.
+  folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -30\n", {}, 11.0));
+  const Json strong = measure(cubes(0.0), few, 1);
+  EXPECT_EQ(strong["verdict"], "undetermined");
+  EXPECT_EQ(strong["engine"], "embree");
+  EXPECT_FALSE(strong.contains("entrance_model"));
+  folder_.write("lens.stl",
+                "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 16 0 0\nvertex 16 12 0\nendloop\n"
+                "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 16 12 0\nvertex 0 12 0\nendloop\n"
+                "endfacet\nendsolid a\n");
+  const Json mesh = measure(cubes(0.0, "[entrance_surface]\nmesh = \"lens.stl\"\ncentre_mm = [0, 0]\n"), few, 1);
+  EXPECT_EQ(mesh["verdict"], "undetermined");
+  EXPECT_EQ(mesh["engine"], "embree");
+}
+
 TEST_F(Entrance, OthersRefuseItByName) {
   folder_.write("lens.toml", turned(kFlat));
   const std::string design = kPrisms + kFront + kBody;

@@ -238,6 +238,29 @@ std::string change_text(const PhotometricChange& change, const TestPlan& test_pl
 
 }  // namespace
 
+namespace {
+
+Json entrance_model_json(const EntranceModel& model) {
+  return {{"method", "tangent_planes"},
+          {"elements", model.elements},
+          {"traced_elements", model.traced_elements},
+          {"path_rms_waves", model.path_rms_waves},
+          {"angle_rms_arcmin", model.angle_rms_arcmin},
+          {"max_angle_arcmin", model.max_angle_arcmin},
+          {"allowed_angle_arcmin", model.allowed_angle_arcmin}};
+}
+
+std::string entrance_model_text(const EntranceModel& model) {
+  return fmt::format(
+      "curved entrance surface: tangent planes of {} of {} elements; differences from rays: paths {} wavelengths "
+      "(rms), "
+      "directions at most {} arcmin (allowed: {})\n",
+      model.traced_elements, model.elements, fixed_visible(model.path_rms_waves, 3),
+      fixed_visible(model.max_angle_arcmin, 3), fixed_visible(model.allowed_angle_arcmin, 2));
+}
+
+}  // namespace
+
 std::string photometry_json(const PhotometryResult& result) {
   const PhotometrySettings& asked = result.request;
   Json json = {{"engine", result.engine},
@@ -258,6 +281,7 @@ std::string photometry_json(const PhotometryResult& result) {
   json["points"] = points_json(result.points);
   if (result.complete || !result.points.empty()) json["verdict"] = verdict_name(result.verdict);
   if (!result.reason.text.empty()) json["reason"] = result.reason.text;
+  if (result.entrance_model) json["entrance_model"] = entrance_model_json(*result.entrance_model);
   if (result.colour) json["chromaticity"] = colour_json(*result.colour);
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
@@ -415,6 +439,7 @@ std::string photometry_table(const PhotometryResult& result, std::size_t max_row
                        result.request.dye.empty() ? "" : ", dye " + printable(result.request.dye));
   table += rows_of(result.points, max_rows);
   table += areas_text(result.request);
+  if (result.entrance_model) table += entrance_model_text(*result.entrance_model);
   if (result.colour) table += colour_text(*result.colour);
   if (!result.points.empty()) table += verdict_text(result.verdict, test_plan, result.reason.text);
   if (result.change) table += change_text(*result.change, test_plan, max_rows);

@@ -1,0 +1,308 @@
+// Members of Photometer that measure behind a curved entrance surface. The light of single elements is traced as beams
+// through tangent planes of the surface (docs/theory/fronts.md).
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "core/error.h"
+#include "core/task_progress.h"
+#include "core/within_memory.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/observers/element_light.h"
+#include "raytrace/observers/surface_reflection.h"
+#include "studies/photometry/element_sample.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec3, raytrace::ReturnFrame;
+
+// Maximum number of pairs of an element and a wavelength that are traced for one direction of light.
+constexpr std::size_t kSamples = 96;
+// Maximum number for preliminary values and searches.
+constexpr std::size_t kFewSamples = 32;
+// Minimum number for readings at many observation angles and for maps, which need much time for each sample.
+constexpr std::size_t kMinSamples = 24;
+// Number of observation angles that take as much time as the map of one direction.
+constexpr double kAnglesOfMap = 8.0;
+// Number of observation angles up to which kSamples samples are traced.
+constexpr double kAnglesOfSamples = 8.0;
+// Every n-th sample is compared with rays.
+constexpr std::size_t kComparedSamples = 6;
+// Minimum power of beams that are compared with rays, as a fraction of the light on an element.
+constexpr double kMinComparedPower = 1e-3;
+// Maximum angle between rays and the model of tangent planes, as a fraction of the sum of the radii of source and
+// receiver. The readings then change by less than about 1 %.
+constexpr double kMaxAngleFraction = 0.1;
+// Minimum trace of ReturnedBeam::entry_from_exit of a mirror image.
+constexpr double kMinTraceOfMirror = 1.0;
+// Number of points along each axis at which the outer reflection of the surface is sampled for maps and for the RRE.
+constexpr std::size_t kReflectionColumns = 256;
+
+/// Returns the frame of a setting in the coordinates of the traced light.
+ReturnFrame traced_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
+  const ReturnFrame frame = frame_of(setting);
+  return {shared.mapped(frame.to_source), shared.mapped(frame.right), shared.mapped(frame.up)};
+}
+
+Vec3 towards_receiver(const ReturnFrame& frame, double observation_deg) {
+  return frame.direction({0.0, Angle::from_deg(observation_deg).rad()});
+}
+
+raytrace::DirectionGrid grid_of_map(const PhotometerSetting& setting, double window_deg) {
+  return {raytrace::DirectionGrid::Layout::square, Angle::from_deg(window_deg).rad(), setting.map_columns,
+          setting.map_columns};
+}
+
+/// Returns true if a direction is inside the cone about another direction.
+bool is_within(const Vec3& direction, const Vec3& axis, double half_angle_deg) {
+  return (direction - axis).norm() <= 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad()) * (1.0 + 1e-9);
+}
+
+/// Estimates a quantity from the readings of all samples.
+template <class Readings, class Value>
+SampledSum sum_of(const ElementSample& sample, const Readings& readings, const Value& value) {
+  std::vector<double> values;
+  for (const auto& reading : readings) values.push_back(value(reading));
+  return sample.sum(values);
+}
+
+}  // namespace
+
+struct Photometer::ElementReading {
+  std::vector<WavelengthReading> pieces;  ///< one for each setting of the direction, per light on the element
+  raytrace::TangentError error;
+  bool is_complete = false;
+};
+
+double Photometer::body_transmittance(std::size_t wavelength) const {
+  const double path_mm = 2.0 * (model_.part.thickness_mm + model_.part.element_depth_mm);
+  return std::exp(-model_.spectral[wavelength].optics.absorption_per_mm * path_mm);
+}
+
+std::size_t Photometer::max_element_samples(const std::vector<PhotometerSetting>& settings) const {
+  double angles = 0.0;
+  for (const PhotometerSetting& setting : settings)
+    angles = std::max(
+        angles, static_cast<double>(setting.observation_deg.size()) + (setting.map_columns > 0 ? kAnglesOfMap : 0.0));
+  const std::size_t usual = effort_ == Effort::full ? kSamples : kFewSamples;
+  const double wanted = static_cast<double>(usual) * std::min(1.0, kAnglesOfSamples / std::max(1.0, angles));
+  return std::max(kMinSamples, static_cast<std::size_t>(wanted));
+}
+
+Photometer::ElementReading Photometer::measure_element(const std::vector<PhotometerSetting>& settings,
+                                                       const EquivalentDirections& directions,
+                                                       const raytrace::ElementLight& elements, std::size_t element,
+                                                       std::size_t wavelength, bool compares_rays,
+                                                       const Cancellation* cancel) const {
+  ElementReading reading;
+  const design::SpectralOptics& light = model_.spectral[wavelength];
+  const Vec3 to_source = frame_of(settings[directions.front().index]).to_source;
+  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
+  WavelengthReading common;
+  const std::unique_ptr<const raytrace::ElementScene> scene = elements.scene(element, to_source, light.optics.index);
+  if (!scene || !scene->is_lit) {
+    for (const SharedDirection& one : directions) {
+      const PhotometerSetting& setting = settings[one.index];
+      common.per_sr.assign(setting.observation_deg.size(), 0.0);
+      common.missing_per_sr = common.per_sr;
+      common.map_per_sr.assign(setting.map_columns * setting.map_columns, 0.0);
+      reading.pieces.push_back(common);
+    }
+    // The light of an element without a tangent plane is missing in the reading.
+    if (!scene) reading.error.add_failure();
+    reading.is_complete = true;
+    return reading;
+  }
+  const raytrace::Illumination illumination = illumination_of(*scene, to_source, design_.light.polarisation);
+  raytrace::FarFieldCollector collector(scene->excerpt.part, illumination, far_field_policy(light, cancel));
+  raytrace::BeamPolicy policy;
+  policy.cutoff = cutoff_of_element();
+  policy.separate_cells = true;
+  policy.keeps_phases = keeps_phases();
+  double scattered_from_cone = 0.0;
+  const raytrace::BeamResult beams =
+      trace_element(*scene, light.optics, illumination, cones, policy, cancel, [&](const raytrace::ReturnedBeam& beam) {
+        if (!has_mirror_image_ && beam.entry_from_exit.linear().trace() >= kMinTraceOfMirror) return;
+        collector.add(beam);
+        double variance = 0.0;
+        for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
+        for (const raytrace::DirectionSample& sample : spread_directions(beam))
+          if (is_within(sample.direction, scene->to_source, cones.back())) {
+            common.rre += sample.power_fraction * beam.stokes.i;
+            scattered_from_cone -= std::expm1(-variance) * sample.power_fraction * beam.stokes.i;
+          }
+        const bool is_in_window =
+            is_within(beam.direction, scene->to_source, 1.5 * request_.window_deg) && beam.stokes.i > kMinComparedPower;
+        if (compares_rays && is_in_window) reading.error.add(elements.surface(), *scene, beam);
+      });
+  if (!beams.complete) return reading;
+  const raytrace::FarField field = collector.finish();
+  common.truncated = beams.ledgers.back()[raytrace::Account::truncated];
+  if (keeps_phases()) {
+    common.rre += field.scattered_within(scene->frame(traced_frame(settings[directions.front().index], {})),
+                                         Angle::from_deg(cones.back()).rad()) -
+                  scattered_from_cone;
+    common.truncated += field.unplaced_power();
+  }
+  common.beyond_budget = field.beyond_budget_power();
+  const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
+  const double factor = scene->power_factor / (scene->fraction * body_transmittance(wavelength));
+  for (const SharedDirection& one : directions) {
+    const PhotometerSetting& setting = settings[one.index];
+    const ReturnFrame frame = scene->frame(traced_frame(setting, one));
+    WavelengthReading piece = common;
+    for (const double observation_deg : setting.observation_deg) {
+      const Vec3 receiver = towards_receiver(frame, observation_deg);
+      const double seen = field.intensity(receiver, kernel_).per_sr;
+      const double missing = (common.rre > 0.0 ? common.truncated / common.rre * seen : 0.0) +
+                             unplaced * field.scattered_per_sr(receiver, kernel_);
+      piece.per_sr.push_back(factor * seen);
+      piece.missing_per_sr.push_back(factor * missing);
+    }
+    if (setting.map_columns > 0) {
+      const raytrace::DirectionGrid grid = grid_of_map(setting, request_.window_deg);
+      piece.map_per_sr = field.binned(frame, grid);
+      piece.map_per_sr.pop_back();
+      for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] *= factor / grid.solid_angle_sr(bin);
+    }
+    for (double* const power : {&piece.rre, &piece.truncated, &piece.beyond_budget}) *power *= factor;
+    reading.pieces.push_back(std::move(piece));
+  }
+  reading.is_complete = !is_cancelled(cancel);
+  return reading;
+}
+
+void Photometer::add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
+                                        const raytrace::ElementLight& elements, WavelengthReading& sum) const {
+  if (!has_front_reflection_ || !has_mirror_image_ || design_.idealisation.lossless_entrance) return;
+  const ReturnFrame frame = traced_frame(setting, shared);
+  const raytrace::Light incident = raytrace::light_of_beam(design_.light.polarisation, frame.to_source);
+  const auto reflectance = [&](const Vec3& normal) {
+    raytrace::Light light = incident;
+    light.rotate_basis_to_interface(-frame.to_source, normal);
+    double power = 0.0;
+    for (std::size_t w = 0; w < model_.spectral.size(); ++w)
+      power +=
+          weights_[w] *
+          light.reflected(fresnel_at_entrance(model_.spectral[w].optics, false, normal.dot(frame.to_source))).power();
+    return power;
+  };
+  const geometry::Polygon& outline = model_.part.outline;
+  for (std::size_t k = 0; k < setting.observation_deg.size(); ++k)
+    sum.per_sr[k] += reflected_per_sr(elements.surface(), outline, elements.top_mm(), frame.to_source,
+                                      towards_receiver(frame, setting.observation_deg[k]), kernel_, reflectance);
+  std::optional<raytrace::DirectionGrid> grid;
+  if (setting.map_columns > 0) grid = grid_of_map(setting, request_.window_deg);
+  raytrace::visit_reflected(
+      elements.surface(), outline, elements.top_mm(), frame.to_source, kReflectionColumns, reflectance,
+      [&](const Vec3& direction, double power) {
+        if (is_within(direction, frame.to_source, design_.detector.acceptance_half_angle_deg.back())) sum.rre += power;
+        if (!grid) return;
+        const std::optional<std::size_t> bin = grid->bin_of(frame.angles_rad(direction));
+        if (bin) sum.map_per_sr[*bin] += power / grid->solid_angle_sr(*bin);
+      });
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface(
+    const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
+  const raytrace::ElementLight elements(model_.part, std::get<0>(*model_.entrance));
+  struct Direction {
+    EquivalentDirections alike;
+    std::size_t lit_elements = 0;
+    std::unique_ptr<const ElementSample> sample;
+    std::vector<ElementReading> readings;
+  };
+  std::vector<double> weights = weights_;
+  for (std::size_t w = 0; w < weights.size(); ++w) weights[w] *= body_transmittance(w);
+  std::vector<Direction> directions;
+  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // direction and sample
+  for (EquivalentDirections& alike : group_equivalent_settings(settings)) {
+    Direction& one = directions.emplace_back();
+    one.alike = std::move(alike);
+    std::vector<PhotometerSetting> own;
+    for (const SharedDirection& shared : one.alike) own.push_back(settings[shared.index]);
+    const double index = model_.spectral[model_.nearest_wavelength()].optics.index;
+    const std::vector<raytrace::ElementPortion> portions = elements.portions(frame_of(own.front()).to_source, index);
+    one.lit_elements = static_cast<std::size_t>(std::count_if(
+        portions.begin(), portions.end(), [](const raytrace::ElementPortion& p) { return p.fraction > 0.0; }));
+    one.sample = std::make_unique<const ElementSample>(portions, weights, max_element_samples(own));
+    one.readings.resize(one.sample->samples().size());
+    for (std::size_t k = 0; k < one.readings.size(); ++k) tasks.emplace_back(directions.size() - 1, k);
+  }
+  // Samples that are compared with rays come first. If the model fails for one of them, the others are not traced.
+  const auto compared = [](const std::pair<std::size_t, std::size_t>& task) {
+    return task.second % kComparedSamples == 0;
+  };
+  const auto first_other = std::stable_partition(tasks.begin(), tasks.end(), compared);
+  TaskProgress all(progress, std::max<std::size_t>(1, tasks.size()));
+  const auto trace = [&](std::size_t from, std::size_t to) {
+    for_each_within_memory(to - from, [&](std::size_t k) {
+      if (is_cancelled(cancel)) return;
+      TaskProgress::Task task(all);
+      Direction& one = directions[tasks[from + k].first];
+      const std::size_t number = tasks[from + k].second;
+      const SampledElement& sampled = one.sample->samples()[number];
+      one.readings[number] = measure_element(settings, one.alike, elements, sampled.element, sampled.wavelength,
+                                             compared(tasks[from + k]), cancel);
+      task.finish();
+    });
+  };
+  const auto checked = static_cast<std::size_t>(first_other - tasks.begin());
+  const double allowed_rad = kMaxAngleFraction * kernel_.reach_rad();
+  trace(0, checked);
+  for (const Direction& one : directions)
+    for (const ElementReading& reading : one.readings)
+      if (request_.engine == raytrace::Engine::automatic && !(reading.error.max_angle_rad() <= allowed_rad))
+        throw BudgetError(text_of(Undiffracted::strong_curvature));
+  trace(checked, tasks.size());
+  std::vector<PhotometerReading> readings(settings.size());
+  for (const Direction& one : directions) {
+    raytrace::TangentError error;
+    for (const ElementReading& reading : one.readings) {
+      if (!reading.is_complete) return std::nullopt;
+      error.add(reading.error);
+    }
+    std::vector<std::size_t> traced;
+    for (const SampledElement& sampled : one.sample->samples()) traced.push_back(sampled.element);
+    std::sort(traced.begin(), traced.end());
+    const auto distinct = std::unique(traced.begin(), traced.end()) - traced.begin();
+    for (std::size_t s = 0; s < one.alike.size(); ++s) {
+      const PhotometerSetting& setting = settings[one.alike[s].index];
+      const auto estimate = [&](const auto& value) {
+        return sum_of(*one.sample, one.readings, [&](const ElementReading& r) { return value(r.pieces[s]); });
+      };
+      WavelengthReading sum;
+      for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
+        const SampledSum seen = estimate([k](const WavelengthReading& r) { return r.per_sr[k]; });
+        sum.per_sr.push_back(std::max(0.0, seen.value));
+        sum.error_per_sr.push_back(seen.std_error);
+        sum.missing_per_sr.push_back(estimate([k](const WavelengthReading& r) { return r.missing_per_sr[k]; }).value);
+      }
+      for (std::size_t bin = 0; bin < setting.map_columns * setting.map_columns; ++bin)
+        sum.map_per_sr.push_back(
+            std::max(0.0, estimate([bin](const WavelengthReading& r) { return r.map_per_sr[bin]; }).value));
+      const SampledSum rre = estimate([](const WavelengthReading& r) { return r.rre; });
+      sum.rre = rre.value;
+      sum.std_error = rre.std_error;
+      sum.truncated = std::max(0.0, estimate([](const WavelengthReading& r) { return r.truncated; }).value);
+      sum.beyond_budget = estimate([](const WavelengthReading& r) { return r.beyond_budget; }).value;
+      add_surface_reflection(setting, one.alike[s], elements, sum);
+      PhotometerReading& reading = readings[one.alike[s].index];
+      reading = reading_of(setting, {sum}, {1.0});
+      EntranceModel& model = reading.entrance_model.emplace();
+      model.elements = one.lit_elements;
+      model.traced_elements = static_cast<std::size_t>(distinct);
+      model.path_rms_waves = error.path_rms_mm() / (1e-6 * model_.spectral[model_.nearest_wavelength()].wavelength_nm);
+      model.angle_rms_arcmin = 60.0 * Angle::from_rad(error.angle_rms_rad()).deg();
+      model.max_angle_arcmin = 60.0 * Angle::from_rad(error.max_angle_rad()).deg();
+      model.allowed_angle_arcmin = 60.0 * Angle::from_rad(allowed_rad).deg();
+      reading.lacks_diffraction = reading.lacks_diffraction || !(error.max_angle_rad() <= allowed_rad);
+    }
+  }
+  return readings;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,292 @@
+// Tests of light behind curved entrance surfaces that is traced through tangent planes: comparison with transforms of
+// the wavefront, with plane faces, with rays, and with the mirror image of a sphere.
+#include "raytrace/observers/element_light.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "raytrace/observers/far_field.h"
+#include "raytrace/observers/photometric_geometry.h"
+#include "raytrace/observers/surface_reflection.h"
+#include "raytrace/observers/tangent_error.h"
+#include "tests/support/closed_forms.h"
+#include "tests/support/designs.h"
+#include "tests/support/entrance_surfaces.h"
+#include "tests/support/return_frames.h"
+#include "tests/support/traced_far_fields.h"
+
+namespace retrace::testing::element_light_test {
+namespace {
+
+using namespace geometry;
+using namespace raytrace;
+using std::numbers::pi;
+using Surface = std::shared_ptr<const EntranceSurface>;
+
+constexpr double kArcmin = kDeg / 60.0;
+constexpr double kWaveNm = 550.0;
+constexpr double kWave = 1e-6 * kWaveNm;
+
+Surface surface_of(const Entrance& entrance) {
+  return std::get<Surface>(entrance);
+}
+
+BeamPolicy beams(double cutoff = 1e-6) {
+  BeamPolicy policy;
+  policy.cutoff = cutoff;
+  policy.separate_cells = true;
+  return policy;
+}
+
+ApertureKernel ten_minutes() {
+  return ApertureKernel({Angle::from_deg(1.0 / 6.0), Angle::from_deg(1.0 / 6.0)});
+}
+
+Vec3 at_angles(double incidence_deg, double azimuth_deg) {
+  const double t = incidence_deg * kDeg, p = azimuth_deg * kDeg;
+  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+/// Light that returns from all elements of a part.
+struct Returned {
+  std::vector<double> per_sr;  ///< one intensity for each direction
+  double fraction = 0.0;       ///< fraction of the incident light that falls on the portions of elements
+  double power = 0.0;          ///< returned power
+  TangentError error;
+};
+
+Returned returned_light(const Part& part, const Surface& surface, const Optics& optics, const Vec3& to_source,
+                        const std::vector<Vec3>& directions) {
+  const ElementLight light(part, surface);
+  Returned all;
+  all.per_sr.assign(directions.size(), 0.0);
+  for (const ElementPortion& portion : light.portions(to_source, optics.index)) all.fraction += portion.fraction;
+  for (std::size_t k = 0; k < light.element_count(); ++k) {
+    const auto scene = light.scene(k, to_source, optics.index);
+    if (!scene || !scene->is_lit) continue;
+    FarFieldPolicy policy;
+    policy.wavelength_nm = kWaveNm;
+    const Illumination illumination = illumination_of(*scene, to_source, kUnpolarised);
+    FarFieldCollector collector(scene->excerpt.part, illumination, policy);
+    trace_element(*scene, optics, illumination, {0.5}, beams(), nullptr, [&](const ReturnedBeam& beam) {
+      collector.add(beam);
+      all.power += scene->power_factor * beam.stokes.i;
+      if ((beam.direction - scene->to_source).norm() < 0.01 && beam.stokes.i > 1e-3)
+        all.error.add(*surface, *scene, beam);
+    });
+    const FarField field = collector.finish();
+    for (std::size_t d = 0; d < directions.size(); ++d)
+      all.per_sr[d] += scene->power_factor * field.intensity(scene->direction(directions[d]), ten_minutes()).per_sr;
+  }
+  return all;
+}
+
+/// Far field of a plane wave through a convex polygon with a wavefront error, by a discrete transform on a grid of
+/// pixels. The total power is 1.
+class WavefrontField {
+ public:
+  WavefrontField(const Polygon& outline, const std::function<double(const Vec2&)>& path_mm) {
+    const Rectangle box = bounding_box(outline);
+    step_ = box.size() / kPixels;
+    first_ = box.lower + 0.5 * step_;
+    for (int j = 0; j < kPixels; ++j)
+      for (int i = 0; i < kPixels; ++i) {
+        const Vec2 p = first_ + Vec2(i, j).cwiseProduct(step_);
+        const bool is_inside = contains(outline, p);
+        field_.push_back(is_inside ? std::polar(1.0, 2.0 * pi / kWave * path_mm(p)) : 0.0);
+        area_mm2_ += is_inside ? step_.prod() : 0.0;
+      }
+  }
+
+  /// Returns the mean intensity over a disc kernel for two equal discs with the radius `radius`.
+  double mean(const Vec2& centre, double radius) const {
+    std::vector<Vec2> offsets;
+    std::vector<std::vector<std::complex<double>>> rows;
+    double sum = 0.0, weights = 0.0;
+    constexpr int kHalf = 36;
+    for (int i = -kHalf; i <= kHalf; ++i) {
+      const double x = centre.x() + 2.0 * radius * i / kHalf;
+      const std::vector<std::complex<double>> column = along_x(x);
+      for (int j = -kHalf; j <= kHalf; ++j) {
+        const Vec2 offset = 2.0 * radius / kHalf * Vec2(i, j);
+        const double weight = overlap(offset.norm() / (2.0 * radius));
+        if (weight <= 0.0) continue;
+        weights += weight;
+        sum += weight * std::norm(along_y(column, centre.y() + offset.y()));
+      }
+    }
+    return sum / weights * std::pow(step_.prod(), 2.0) / (kWave * kWave * area_mm2_);
+  }
+
+ private:
+  static constexpr int kPixels = 360;
+
+  /// Returns the area that two discs share, relative to that of concentric discs. `distance` is in diameters.
+  static double overlap(double distance) {
+    if (distance >= 1.0) return 0.0;
+    return 2.0 / pi * (std::acos(distance) - distance * std::sqrt(1.0 - distance * distance));
+  }
+  std::vector<std::complex<double>> along_x(double cosine) const {
+    std::vector<std::complex<double>> waves, sums(kPixels);
+    for (int i = 0; i < kPixels; ++i)
+      waves.push_back(std::polar(1.0, -2.0 * pi / kWave * cosine * (first_.x() + i * step_.x())));
+    for (int j = 0; j < kPixels; ++j)
+      for (int i = 0; i < kPixels; ++i)
+        sums[static_cast<std::size_t>(j)] +=
+            waves[static_cast<std::size_t>(i)] * field_[static_cast<std::size_t>(j * kPixels + i)];
+    return sums;
+  }
+  std::complex<double> along_y(const std::vector<std::complex<double>>& sums, double cosine) const {
+    std::complex<double> sum = 0.0;
+    for (int j = 0; j < kPixels; ++j)
+      sum += std::polar(1.0, -2.0 * pi / kWave * cosine * (first_.y() + j * step_.y())) *
+             sums[static_cast<std::size_t>(j)];
+    return sum;
+  }
+
+  Vec2 first_;
+  Vec2 step_;
+  double area_mm2_ = 0.0;
+  std::vector<std::complex<double>> field_;
+};
+
+Optics ideal_mirrors() {
+  Optics optics = pmma();
+  optics.mirror_facets = true;
+  optics.lossless_entrance = true;
+  return optics;
+}
+
+// A cube corner of mirrors behind a sphere of radius R returns a plane wave through its hexagon, with the additional
+// optical path (n - 1) r^2 / R, because light enters at the distance r from the apex and leaves at -r.
+TEST(ElementLight, SphereAgreesWithTheTransformOfItsWavefront) {
+  const Part part = build_part(single(HexagonalCube{3.0}, 0.3));
+  const Vec2 middle = bounding_box(part.outline).centre();
+  const Polygon hexagon = moved(part.outline, -middle);
+  for (const double radius_mm : {200.0, 400.0, 1000.0, 1e6}) {
+    const WavefrontField expected(hexagon, [&](const Vec2& p) { return (kPmma - 1.0) * p.squaredNorm() / radius_mm; });
+    std::vector<Vec3> directions;
+    std::vector<double> means;
+    for (const double minutes : {0.0, 8.0, 15.0, 20.0, 30.0})
+      for (const double azimuth_deg : {10.0, 95.0}) {
+        directions.push_back(at_angles(minutes / 60.0, azimuth_deg));
+        means.push_back(expected.mean(directions.back().head<2>(), 5.0 * kArcmin));
+      }
+    const Returned found = returned_light(part, surface_of(sphere_entrance(radius_mm, 0.3, middle)), ideal_mirrors(),
+                                          Vec3::UnitZ(), directions);
+    const double peak = *std::max_element(means.begin(), means.end());
+    for (std::size_t k = 0; k < directions.size(); ++k)
+      EXPECT_NEAR(found.per_sr[k], means[k], 0.01 * peak) << radius_mm << " " << k;
+    EXPECT_NEAR(found.fraction, 1.0, 1e-6) << radius_mm;
+    EXPECT_NEAR(found.power, 1.0, 3e-3) << radius_mm;
+  }
+}
+
+PartSpec small_honeycomb(double error_arcmin) {
+  PartSpec spec = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 4.0, 1.0);
+  spec.angle_errors.dihedral_error_arcmin.fill(error_arcmin);
+  return spec;
+}
+
+// A sphere of a very large radius, and an exactly plane surface, must equal the plane entrance face.
+TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
+  const Part part = build_part(small_honeycomb(1.5));
+  const Vec2 middle = bounding_box(part.outline).centre();
+  for (const double incidence_deg : {0.0, 12.0}) {
+    const Vec3 to_source = at_angles(incidence_deg, 40.0);
+    FarFieldPolicy policy;
+    policy.wavelength_nm = kWaveNm;
+    const SourceAngles source = source_angles(to_source);
+    const Illumination light{source.incidence, source.azimuth, kUnpolarised};
+    const ReturnFrame frame = frame_at(light);
+    std::vector<Vec3> directions;
+    for (const double minutes : {12.0, 20.0, 40.0}) directions.push_back(frame.direction({0.0, minutes * kArcmin}));
+    FarFieldCollector collector(part, light, policy);
+    double power = 0.0;
+    BeamTracer(part).trace(pmma(), light, {0.5}, beams(1e-7), nullptr, [&](const ReturnedBeam& beam) {
+      if (beam.depth == 0) return;
+      collector.add(beam);
+      power += beam.stokes.i;
+    });
+    const FarField flat = collector.finish();
+    for (const Entrance& entrance : {plane_entrance(1.0), sphere_entrance(1e6, 1.0, middle)}) {
+      const Returned found = returned_light(part, surface_of(entrance), pmma(), to_source, directions);
+      for (std::size_t k = 0; k < directions.size(); ++k) {
+        const double expected = flat.intensity(directions[k], ten_minutes()).per_sr;
+        EXPECT_NEAR(found.per_sr[k], expected, 1e-3 * flat.intensity(to_source, ten_minutes()).per_sr)
+            << incidence_deg << " " << k;
+      }
+      EXPECT_NEAR(found.power, power, 1e-3) << incidence_deg;
+      EXPECT_NEAR(found.fraction, 1.0, 1e-4) << incidence_deg;
+      EXPECT_LT(found.error.max_angle_rad(), 1e-5) << incidence_deg;
+    }
+  }
+}
+
+// Behind an inclined plane, a perfect cube corner returns light to its source.
+TEST(ElementLight, InclinedPlaneSteersNothing) {
+  const Part part = build_part(small_honeycomb(0.0));
+  const Surface surface = surface_of(plane_entrance(1.5, 0.12, -0.07));
+  const ElementLight light(part, surface);
+  for (const Vec3& to_source : {at_angles(0.0, 0.0), at_angles(15.0, 70.0)}) {
+    double power = 0.0;
+    for (std::size_t k = 0; k < light.element_count(); ++k) {
+      const auto scene = light.scene(k, to_source, kPmma);
+      if (!scene || !scene->is_lit) continue;
+      const Illumination illumination = illumination_of(*scene, to_source, kUnpolarised);
+      trace_element(*scene, pmma(), illumination, {0.5}, beams(), nullptr, [&](const ReturnedBeam& beam) {
+        for (const DirectionSample& sample : spread_directions(beam))
+          if ((sample.direction - scene->to_source).norm() < 1e-9)
+            power += scene->power_factor * sample.power_fraction * beam.stokes.i;
+      });
+    }
+    EXPECT_GT(power, 0.4);
+  }
+}
+
+// The model contains the terms of second order in the curvature. The error of the direction is of third order.
+TEST(ElementLight, ErrorsAreCubicInTheCurvature) {
+  const Part part = build_part(single(HexagonalCube{3.0}, 2.0));
+  const Vec2 middle = bounding_box(part.outline).centre();
+  std::vector<double> angles;
+  for (const double radius_mm : {400.0, 200.0, 100.0}) {
+    const Returned found =
+        returned_light(part, surface_of(sphere_entrance(radius_mm, 2.0, middle)), ideal_mirrors(), Vec3::UnitZ(), {});
+    EXPECT_GT(found.error.rays(), 20U);
+    angles.push_back(found.error.max_angle_rad());
+  }
+  EXPECT_LT(angles[0], 0.05 * kArcmin);
+  EXPECT_NEAR(angles[1] / angles[0], 8.0, 2.0);
+  EXPECT_NEAR(angles[2] / angles[1], 8.0, 3.0);
+}
+
+// The intensity of the mirror image in a sphere of radius R is rho E R^2 / 4 in every direction.
+TEST(SurfaceReflection, SphereHasTheIntensityOfItsClosedForm) {
+  const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(40.0, 30.0)});
+  const double radius_mm = 300.0;
+  const Entrance sphere = sphere_entrance(radius_mm, 3.0, {20.0, 15.0});
+  const EntranceSurface& surface = *surface_of(sphere);
+  for (const double incidence_deg : {0.0, 2.0}) {
+    const Vec3 to_source = at_angles(incidence_deg, 30.0);
+    const Vec3 receiver = at_angles(incidence_deg + 1.0 / 3.0, 30.0);
+    const double per_sr =
+        reflected_per_sr(surface, outline, 3.0, to_source, receiver, ten_minutes(), [](const Vec3&) { return 0.04; });
+    const double intensity = per_sr * area(outline) * to_source.z();
+    EXPECT_NEAR(intensity, 0.04 * radius_mm * radius_mm / 4.0, 3e-3 * 0.04 * radius_mm * radius_mm / 4.0);
+  }
+  double power = 0.0;
+  visit_reflected(
+      surface, outline, 3.0, Vec3::UnitZ(), 200, [](const Vec3&) { return 0.04; },
+      [&](const Vec3&, double own) { power += own; });
+  EXPECT_NEAR(power, 0.04, 1e-6);
+}
+
+}  // namespace
+}  // namespace retrace::testing::element_light_test
