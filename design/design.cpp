@@ -92,6 +92,15 @@ std::string_view Design::entrance_key() const {
   return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
 }
 
+bool Design::has_deflecting_shells() const {
+  return std::ranges::any_of(shells, [](const OuterShell& shell) { return !shell.is_plane_parallel(); });
+}
+
+InputLocation Design::where_shell_deflects() const {
+  const auto found = std::ranges::find_if(shells, [](const OuterShell& shell) { return !shell.is_plane_parallel(); });
+  return where(schema::path_of_entry("shell", static_cast<std::size_t>(found - shells.begin())));
+}
+
 const ArrayMask* Design::mask() const {
   return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
 }
@@ -162,6 +171,9 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
   if (design.entrance && !capabilities.entrances)
     throw InputError(design.where(design.entrance_key()),
                      what + " is not available for a part with an [entrance_surface], only for a plane entrance face");
+  if (!design.shells.empty() && !capabilities.shells)
+    throw InputError(design.where(schema::path_of_entry("shell", 0)),
+                     what + " is not available for a part behind a [[shell]]: remove the shells from the design");
   if (design.wet_back && !capabilities.wet_backs)
     throw InputError(
         design.where("wet_back.index"),

@@ -15,7 +15,9 @@
 #include "design/entrance_condition.h"
 #include "design/entrance_of_design.h"
 #include "design/form_of_design.h"
+#include "design/media.h"
 #include "design/part_of_design.h"
+#include "design/shells_of_design.h"
 #include "materials/io/glass_catalogue.h"
 #include "materials/io/index_record.h"
 #include "materials/io/spectrum_reader.h"
@@ -28,11 +30,6 @@ namespace {
 constexpr double kMaxFringesPerStep = 0.5;
 constexpr std::string_view kFacetLayers = "coating.facets";
 constexpr std::string_view kEntranceLayers = "coating.entrance";
-
-/// Returns the position of the key that determines the wavelengths of the light.
-InputLocation light_location(const Design& design) {
-  return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
-}
 
 /// Returns the material of the part: a glass of the design's catalogue, the material of an index record, or a shipped
 /// material.
@@ -63,15 +60,6 @@ void require_temperature(const Design& design, const materials::Material& materi
     throw InputError(design.where("body.temperature_c"),
                      fmt::format("must be {}, because {} has no thermo-optic coefficients, got {}",
                                  shortest(material.temperature_c), material.name, shortest(*temperature_c)));
-}
-
-double index_at_wavelength(const Design& design, const materials::Material& material, const materials::Material& air,
-                           double wavelength_nm, double temperature_c) {
-  try {
-    return materials::index_relative_to_air(material, air, wavelength_nm, temperature_c);
-  } catch (const InputError& error) {
-    throw InputError(light_location(design), error.what());  // adds the position at which the wavelength was given
-  }
 }
 
 /// Returns the height map in the orientation of the facet, with its x axis horizontal and its form removed. Warnings
@@ -137,24 +125,6 @@ surface_models::ScatterModel scatter_model(const Design& design, const std::opti
   }
 }
 
-double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
-  const Absorption& given = design.substance.absorption_per_mm;
-  if (std::holds_alternative<std::monostate>(given)) return materials::absorption_per_mm(material, wavelength_nm);
-  if (const double* const per_mm = std::get_if<double>(&given)) return *per_mm;
-  materials::SpectralCurve curve;
-  for (const auto& [at_nm, per_mm] : std::get<std::vector<SpectralAbsorption>>(given)) {
-    curve.wavelengths_nm.push_back(at_nm);
-    curve.values.push_back(per_mm);
-  }
-  if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
-    throw InputError(
-        design.where("body.absorption_per_mm"),
-        fmt::format("must cover all wavelengths of the light, for example {} nm, but covers only {} to {} nm",
-                    shortest(wavelength_nm), shortest(curve.wavelengths_nm.front()),
-                    shortest(curve.wavelengths_nm.back())));
-  return curve.at(wavelength_nm);
-}
-
 /// Returns the complex refractive index of a coating layer, relative to air.
 /// \throw InputError at `where` if the material has no index at this wavelength
 std::complex<double> index_of_layer(const Design& design, const materials::MaterialLibrary& library,
@@ -210,7 +180,8 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   optics.absorbing_walls = design.surface.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
-  optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
+  optics.absorption_per_mm = absorption_at(design, design.substance.absorption_per_mm, "body.absorption_per_mm",
+                                           material, wavelength_nm);
   optics.index = design.substance.refractive_index
                      ? *design.substance.refractive_index
                      : index_at_wavelength(design, material, library.air(), wavelength_nm,
@@ -219,6 +190,7 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
     throw InputError(design.where("body.material"),
                      fmt::format("the refractive index of {} at {} nm must be >= 1, got {}", material.name,
                                  wavelength_nm, optics.index));
+  optics.shells = shells_at(design, library, wavelength_nm);
   optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
@@ -398,13 +370,18 @@ std::size_t OpticalModel::nearest_wavelength() const {
 }
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
-  require_supported(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
+  require_supported(design, {.what = {}, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
                      "an [entrance_surface] is supported only by retrace rre, photometry, inspect and rays");
+  if (entrances == Entrances::plane && !design.shells.empty())
+    throw InputError(design.where(schema::path_of_entry("shell", 0)),
+                     "a [[shell]] is supported only by retrace rre, photometry, inspect and rays: remove the shells "
+                     "from the design");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);
+  if (!design.shells.empty()) clearances_of_shells(design, model.optics.shells, model.part, model.entrance);
   if (design.wet_back) add_wet_back(design, model);
   return model;
 }
@@ -461,6 +438,9 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
     warn_of_extrapolation(design, optics.material(), model);
     warn_of_temperature(design, optics.material(), model);
   }
+  for (std::size_t k = 0; k < design.shells.size(); ++k)
+    if (!design.shells[k].refractive_index && design.shells[k].material != design.substance.material)
+      warn_of_extrapolation(design, material_of_shell(design, library, k), model);
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
   append(model.warnings, design.warnings());

@@ -41,13 +41,13 @@ struct OpticalModel {
   std::size_t nearest_wavelength() const;
 };
 
-/// Entrance faces that a caller supports: only plane faces, or also curved faces.
+/// Entrance faces that a caller supports: only plane faces, or also curved faces and shells in front of the face.
 enum class Entrances { plane, any };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.
 /// \throw InputError that names file and line. It is thrown for an unknown material, an invalid spectrum, and a
 ///        wavelength without an index. It is also thrown for balls, which have no geometry::Part, and for a curved
-///        entrance face unless `entrances` is any.
+///        entrance face or shells unless `entrances` is any.
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
                         Entrances entrances = Entrances::plane);
 

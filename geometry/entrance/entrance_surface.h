@@ -48,6 +48,9 @@ using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::share
 /// no face.
 using EntranceHeights = std::function<double(const Vec2& point_mm)>;
 
+/// Returns the height of an entrance surface at a point of the part frame, or NaN where there is no surface.
+double height_mm(const Entrance& entrance, const Vec2& point_mm);
+
 /// Range of heights and slopes of an entrance surface over the outline of a part.
 struct EntranceRange {
   double lowest_mm = 0.0;

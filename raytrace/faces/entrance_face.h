@@ -34,6 +34,9 @@ class EntranceFace {
   /// Returns the minimum height over the outline; highest_mm() returns the maximum height.
   double lowest_mm() const { return range_.lowest_mm; }
   double highest_mm() const { return range_.highest_mm; }
+  /// Returns the height at the middle of the part, the centre of the outline's bounding box. Returns the maximum height
+  /// if this point is outside of the outline.
+  double middle_height_mm() const;
 
  protected:
   explicit EntranceFace(const geometry::EntranceRange& range) : range_(range) {}
