@@ -240,10 +240,10 @@ struct OuterShell {
   std::string material = "PMMA";
   std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
   Absorption absorption_per_mm;
-  std::optional<double> outer_radius_mm;   ///< > 0: convex towards the source; empty: plane
-  std::optional<double> inner_radius_mm;   ///< > 0: convex towards the source; empty: plane
-  std::array<double, 2> wedge_deg = {};    ///< rotation of the inner surface about x and then y, relative to the outer
-  std::array<double, 2> tilt_deg = {};     ///< rotation of the whole shell about x and then y
+  std::optional<double> outer_radius_mm;  ///< > 0: convex towards the source; empty: plane
+  std::optional<double> inner_radius_mm;  ///< > 0: convex towards the source; empty: plane
+  std::array<double, 2> wedge_deg = {};   ///< rotation of the inner surface about x and then y, relative to the outer
+  std::array<double, 2> tilt_deg = {};    ///< rotation of the whole shell about x and then y
 
   /// Returns true if the surfaces are parallel planes, so that light keeps its direction.
   bool is_plane_parallel() const {

@@ -15,8 +15,8 @@ bool has_oriented_faces(const Design& design, const OpticalModel& model) {
   const raytrace::EngineFacts facts = engine_facts(design, &model.optics);
   const bool are_tilted = std::ranges::any_of(
       design.shells, [](const OuterShell& shell) { return shell.tilt_deg != std::array<double, 2>{}; });
-  return are_tilted || facts.has_balls || facts.has_curved_entrance || facts.has_deflecting_shells || facts.has_unequal_backs || facts.has_form ||
-         design.surface.entrance.scratch_azimuth_deg ||
+  return are_tilted || facts.has_balls || facts.has_curved_entrance || facts.has_deflecting_shells ||
+         facts.has_unequal_backs || facts.has_form || design.surface.entrance.scratch_azimuth_deg ||
          std::holds_alternative<HeightMapTexture>(design.surface.texture);
 }
 

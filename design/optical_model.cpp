@@ -180,8 +180,8 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   optics.absorbing_walls = design.surface.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
-  optics.absorption_per_mm = absorption_at(design, design.substance.absorption_per_mm, "body.absorption_per_mm",
-                                           material, wavelength_nm);
+  optics.absorption_per_mm =
+      absorption_at(design, design.substance.absorption_per_mm, "body.absorption_per_mm", material, wavelength_nm);
   optics.index = design.substance.refractive_index
                      ? *design.substance.refractive_index
                      : index_at_wavelength(design, material, library.air(), wavelength_nm,
@@ -376,8 +376,8 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
                      "an [entrance_surface] is supported only by retrace rre, photometry, inspect and rays");
   if (entrances == Entrances::plane && !design.shells.empty())
     throw InputError(design.where(schema::path_of_entry("shell", 0)),
-                     "a [[shell]] is supported only by retrace rre, photometry, inspect and rays: remove the shells "
-                     "from the design");
+                     "a [[shell]] is supported only by retrace rre, photometry, roughness, rays, inspect and studies "
+                     "of their results: remove the shells from the design");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);

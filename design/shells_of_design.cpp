@@ -63,12 +63,12 @@ double index_of_shell(const Design& design, const materials::MaterialLibrary& li
   const OuterShell& given = design.shells[k];
   if (given.refractive_index) return *given.refractive_index;
   const materials::Material& material = material_of_shell(design, library, k);
-  const double temperature_c = material.thermo_optic ? design.substance.temperature_c.value_or(material.temperature_c)
-                                                     : material.temperature_c;
+  const double temperature_c =
+      material.thermo_optic ? design.substance.temperature_c.value_or(material.temperature_c) : material.temperature_c;
   const double index = index_at_wavelength(design, material, library.air(), wavelength_nm, temperature_c);
   if (!(index >= 1.0))
-    throw InputError(design.where(key_of(k, "material")), fmt::format("the refractive index of {} must be >= 1, got {}",
-                                                                      material.name, index));
+    throw InputError(design.where(key_of(k, "material")),
+                     fmt::format("the refractive index of {} must be >= 1, got {}", material.name, index));
   return index;
 }
 
@@ -110,11 +110,12 @@ std::vector<Vec3> points_of_entrance(const geometry::Part& part, const std::opti
   return points;
 }
 
-/// Returns a text about the point of the part at which surfaces meet.
-std::string at_text(const Vec2& at, const geometry::Part& part) {
+/// Returns the coordinates of a point in the part frame as a text.
+/// \param at point relative to the middle of the part
+std::string point_text(const Vec2& at, const geometry::Part& part) {
   const Vec2 point =
       at + (part.period_mm ? Vec2(0.5 * *part.period_mm) : geometry::bounding_box(part.outline).centre());
-  return fmt::format("at x = {}, y = {} mm", fixed(point.x(), 4), fixed(point.y(), 4));
+  return fmt::format("x = {}, y = {} mm", fixed(point.x(), 4), fixed(point.y(), 4));
 }
 
 /// Checks the distances of one shell.
@@ -130,9 +131,10 @@ class ClearanceCheck {
     if (!(thickness_mm > 0.0))
       throw InputError(
           design_.where(key_of(k_, "thickness_mm")),
-          fmt::format("must be so large that the surfaces of the shell do not cross over the part, but they cross {}, "
-                      "got {}",
-                      at_text(at, part_), shortest(design_.shells[k_].thickness_mm)));
+          fmt::format(
+              "must be so large that the surfaces of the shell do not cross over the part, but they cross at {}, "
+              "got {}",
+              point_text(at, part_), shortest(design_.shells[k_].thickness_mm)));
     clearance_.min_thickness_mm = std::min(clearance_.min_thickness_mm, thickness_mm);
     clearance_.max_thickness_mm = std::max(clearance_.max_thickness_mm, thickness_mm);
     if (k_ + 1 < shells_.size()) add_gap(at, height_of(shells_[k_ + 1].outer, at, k_ + 1, "outer_radius_mm"));
@@ -142,10 +144,11 @@ class ClearanceCheck {
   void add_gap(const Vec2& at, double next_mm) {
     const double gap_mm = height_of(shells_[k_].inner, at, k_, "inner_radius_mm") - next_mm;
     if (gap_mm < -kRoundingMm)
-      throw InputError(design_.where(key_of(k_, "gap_mm")),
-                       fmt::format("must be so large that the shell does not extend into {}, but they meet {}, got {}",
-                                   k_ + 1 < shells_.size() ? "the next shell" : "the part", at_text(at, part_),
-                                   shortest(design_.shells[k_].gap_mm)));
+      throw InputError(
+          design_.where(key_of(k_, "gap_mm")),
+          fmt::format("must be so large that the shell does not extend into {}, but they meet at {}, got {}",
+                      k_ + 1 < shells_.size() ? "the next shell" : "the part", point_text(at, part_),
+                      shortest(design_.shells[k_].gap_mm)));
     clearance_.min_gap_mm = std::min(clearance_.min_gap_mm, gap_mm);
   }
 
@@ -157,8 +160,8 @@ class ClearanceCheck {
     if (std::isfinite(height_mm)) return height_mm;
     throw InputError(design_.where(key_of(shell, radius_key)),
                      fmt::format("must be so large that the surface extends over the whole part, but it does not "
-                                 "extend to the point {}, got {}",
-                                 at_text(at, part_).substr(3), shortest(1.0 / surface.curvature_per_mm)));
+                                 "extend to {}, got {}",
+                                 point_text(at, part_), shortest(1.0 / surface.curvature_per_mm)));
   }
 
   const Design& design_;

@@ -250,9 +250,7 @@ std::optional<WetElements> read_wet_back(const Document& document) {
 std::vector<OuterShell> read_shells(const Document& document) {
   std::vector<OuterShell> shells;
   for (std::size_t k = 0; k < document.count("shell"); ++k) {
-    const auto key = [&](std::string_view name) {
-      return schema::path_in(schema::path_of_entry("shell", k), name);
-    };
+    const auto key = [&](std::string_view name) { return schema::path_in(schema::path_of_entry("shell", k), name); };
     shells.push_back({.thickness_mm = document.number(key("thickness_mm")),
                       .gap_mm = document.number(key("gap_mm")),
                       .material = document.text(key("material")),

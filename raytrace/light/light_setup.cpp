@@ -164,8 +164,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
   CoherentLight arriving;
   static_cast<Light&>(arriving) = light_of_beam(illumination.stokes, to_source);
   arriving.jones(1, 1) = -1.0;  // see light_of_beam()
-  if (!deflect(optics.shells))
-    arrival_losses = pass_plates(optics.shells, ShellPassage::to_part, -to_source, arriving);
+  if (!deflect(optics.shells)) arrival_losses = pass_plates(optics.shells, ShellPassage::to_part, -to_source, arriving);
   incident = arriving;
   for (const double half_angle_deg : cones_deg) {
     const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());

@@ -57,7 +57,7 @@ struct LightSetup {
     /// Jones matrix of the reflection. The first axis of the incident field is source_axis(to_source). The first axis
     /// of the reflected field is source_axis(reflected_direction).
     JonesMatrix reflected_jones = JonesMatrix::Zero();
-    double absorbed = 0.0;  ///< power that the layers on the entrance face absorb
+    double absorbed = 0.0;         ///< power that the layers on the entrance face absorb
     ShellLosses reflected_losses;  ///< power that plane-parallel shells take from the reflected light
   };
   Entry entry;

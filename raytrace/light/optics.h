@@ -34,7 +34,7 @@ struct Optics {
   surface_models::ScatterModel facet_scatter;  ///< scattering by the texture of retro facets
   surface_models::FacetForm facet_form;        ///< deviation of retro facets from their planes
   double wavelength_nm = 587.56;               ///< in vacuum; used only for scattering
-  Shells shells;                                ///< separate lenses in front of the entrance face
+  Shells shells;                               ///< separate lenses in front of the entrance face
   std::shared_ptr<const WetBack> wet;          ///< elements whose medium behind the back has another index than
                                                ///< `back_index`; null if there are none
 

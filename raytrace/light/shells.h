@@ -1,7 +1,7 @@
 #pragma once
 
-// Shells: separate lenses in the air in front of a part, such as the outer lens of a lamp. Light crosses them on its way
-// to the part and again on its way back (docs/theory/shells.md).
+// Shells: separate lenses in the air in front of a part, such as the outer lens of a lamp. Light crosses them on its
+// way to the part and again on its way back (docs/theory/shells.md).
 
 #include <vector>
 

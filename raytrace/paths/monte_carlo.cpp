@@ -70,7 +70,8 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampl
     for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
       if (cancel != nullptr && cancel->requested()) return std::nullopt;
       const std::array<double, 2> point = is_plain ? random_point(seed, task.replicate, ray) : square(ray);
-      walker.trace(setup.lit_region ? (*setup.lit_region)(point) : scene_->entrance(point), {seed, kChoiceStream}, task.replicate, ray);
+      walker.trace(setup.lit_region ? (*setup.lit_region)(point) : scene_->entrance(point), {seed, kChoiceStream},
+                   task.replicate, ray);
     }
     return tally;
   };

@@ -28,8 +28,7 @@ void PathWalker::enter_through_shells(const Vec2& start_mm) {
   state.light = setup_.incident;
   state.inside = false;
   if (!pass_shells(ShellPassage::to_part, state)) return;
-  const double face_mm =
-      setup_.entrance_face != nullptr ? setup_.entrance_face->highest_mm() : setup_.thickness_mm;
+  const double face_mm = setup_.entrance_face != nullptr ? setup_.entrance_face->highest_mm() : setup_.thickness_mm;
   const double to_face = (face_mm - state.position.z()) / state.direction.z();
   const Vec3 on_face = state.position + to_face * state.direction;
   const bool is_beside = std::any_of(setup_.sides.begin(), setup_.sides.end(), [&](const PathSetup::Side& side) {

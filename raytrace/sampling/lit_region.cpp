@@ -35,8 +35,8 @@ class BeamPath {
     return on_plane(Vec3(end.x(), end.y(), to_mm_), direction_, from_mm_);
   }
 
-  /// Returns the start of the light that reaches a point of the face, by Newton's method. If no light reaches the point,
-  /// returns straight_start_of().
+  /// Returns the start of the light that reaches a point of the face, by Newton's method. If no light reaches the
+  /// point, returns straight_start_of().
   Vec2 start_of(const Vec2& end) const {
     Vec2 start = straight_start_of(end);
     for (int step = 0; step < kMaxNewtonSteps; ++step) {
@@ -78,8 +78,7 @@ class BeamPath {
 /// Returns points on the border of a polygon, including its corners, in steps of about 1 / kBorderChords of the border.
 geometry::Polygon with_points_on_sides(const geometry::Polygon& polygon) {
   double border_mm = 0.0;
-  for (std::size_t k = 0; k < polygon.size(); ++k)
-    border_mm += (polygon[(k + 1) % polygon.size()] - polygon[k]).norm();
+  for (std::size_t k = 0; k < polygon.size(); ++k) border_mm += (polygon[(k + 1) % polygon.size()] - polygon[k]).norm();
   geometry::Polygon points;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 side = polygon[(k + 1) % polygon.size()] - polygon[k];

@@ -11,8 +11,8 @@
 
 namespace retrace::raytrace {
 
-/// Region of a horizontal plane, at the height of the vertex of the outermost shell, which the incident beam covers. The
-/// light from this region reaches the whole entrance face, and no other light does. The border of the region is a
+/// Region of a horizontal plane, at the height of the vertex of the outermost shell, which the incident beam covers.
+/// The light from this region reaches the whole entrance face, and no other light does. The border of the region is a
 /// polygon. Its corners are the points from which light reaches points on the border of the face.
 class LitRegion {
  public:

@@ -44,8 +44,8 @@ class SectionLines {
   SectionLines(const design::OpticalModel& model, Eigen::Index axis)
       : axis_(axis), heights_(model), shells_(model.optics.shells) {
     const geometry::Part& part = model.part;
-    const geometry::Rectangle box = part.period_mm ? geometry::Rectangle{Vec2::Zero(), *part.period_mm}
-                                                   : geometry::bounding_box(part.outline);
+    const geometry::Rectangle box =
+        part.period_mm ? geometry::Rectangle{Vec2::Zero(), *part.period_mm} : geometry::bounding_box(part.outline);
     centre_ = box.centre();
     half_mm_ = 0.5 * box.size()[axis];
     // A period of an infinite part may be much smaller than the shells.

@@ -46,9 +46,7 @@ class Shell : public ::testing::Test {
     folder_.write("design.toml", design);
     return retrace_json(folder_, arguments);
   }
-  Json rre(const std::string& design, const Arguments& more) {
-    return run(design, with({"rre", "design.toml"}, more));
-  }
+  Json rre(const std::string& design, const Arguments& more) { return run(design, with({"rre", "design.toml"}, more)); }
 
   /// Returns the position `file:line: key` of the error for which a design is refused.
   std::string refusal(const std::string& design, const Arguments& command = {"rre", "design.toml", "-o", "out"}) {
@@ -99,8 +97,9 @@ TEST_F(Shell, LensIsTracedByRays) {
 
 // The design in results contains the shells, and can be read again.
 TEST_F(Shell, DesignsKeepTheirShells) {
-  const std::string tilted = "[[shell]]\nthickness_mm = 2\ngap_mm = 4\nmaterial = \"PC\"\ntilt_deg = [3, -4]\n"
-                             "absorption_per_mm = [[400, 0.1], [700, 0.02]]\n";
+  const std::string tilted =
+      "[[shell]]\nthickness_mm = 2\ngap_mm = 4\nmaterial = \"PC\"\ntilt_deg = [3, -4]\n"
+      "absorption_per_mm = [[400, 0.1], [700, 0.02]]\n";
   const Json json = rre(kCubes + tilted + kLens, {"--samples", "64"});
   const Json& shells = json["designs"][0]["shell"];
   ASSERT_EQ(shells.size(), 2U);
@@ -111,14 +110,14 @@ TEST_F(Shell, DesignsKeepTheirShells) {
   EXPECT_EQ(shells[1]["wedge_deg"], Json::array({0.0, 0.0}));
 }
 
-// Behind a plate, photometry computes diffraction and gives a verdict. The intensities are those without the plate times
-// a factor between those of s- and p-polarised light.
+// Behind a plate, photometry computes diffraction and gives a verdict. The intensities are those without the plate
+// times a factor between those of s- and p-polarised light.
 TEST_F(Shell, PhotometryBehindAPlateHasAVerdict) {
   folder_.write("limits.csv",
                 "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
                 "S,,white,0.33,10,0,1,mcd/lx,confirmed\nS,,white,0.33,5,20,1,mcd/lx,confirmed\n");
-  const Arguments how = {"photometry", "design.toml", "--standard", "limits.csv",  "--area-cm2", "30",
-                         "--light",    "design",      "--json",     "-",           "--no-advice"};
+  const Arguments how = {"photometry", "design.toml", "--standard", "limits.csv", "--area-cm2", "30",
+                         "--light",    "design",      "--json",     "-",          "--no-advice"};
   folder_.write("design.toml", kEndless);
   const Json bare = Json::parse(retrace(folder_, how).out);
   folder_.write("design.toml", kEndless + kPlate);
@@ -128,8 +127,8 @@ TEST_F(Shell, PhotometryBehindAPlateHasAVerdict) {
   EXPECT_EQ(behind["engine"], bare["engine"]);
   EXPECT_EQ(behind["verdict"], "pass");
   for (std::size_t k = 0; k < 2; ++k) {
-    const double factor = behind["points"][k]["value_mcd_per_lx"].get<double>() /
-                          bare["points"][k]["value_mcd_per_lx"].get<double>();
+    const double factor =
+        behind["points"][k]["value_mcd_per_lx"].get<double>() / bare["points"][k]["value_mcd_per_lx"].get<double>();
     const double incidence_deg = k == 0 ? 10.0 : 20.6;
     const double s = std::pow(through_face(incidence_deg, true), 4.0);
     const double p = std::pow(through_face(incidence_deg, false), 4.0);
@@ -168,10 +167,11 @@ TEST_F(Shell, InspectDescribesAndDrawsThem) {
 
 // An emitter is placed in front of the shells. The light that it sends passes them twice.
 TEST_F(Shell, RaysPassThem) {
-  const std::string plate = "[part]\nplate_mm = [20, 20]\n[body]\nthickness_mm = 1\nfacet_coating = \"aluminium\"\n"
-                            "refractive_index = 1\nabsorption_per_mm = 0\n[idealisation]\nfacets = \"mirror\"\n";
-  const Arguments how = {"rays", "design.toml", "--emitter", "collimated", "--disc-mm", "4", "--rays", "500",
-                         "--split", "1e-6"};
+  const std::string plate =
+      "[part]\nplate_mm = [20, 20]\n[body]\nthickness_mm = 1\nfacet_coating = \"aluminium\"\n"
+      "refractive_index = 1\nabsorption_per_mm = 0\n[idealisation]\nfacets = \"mirror\"\n";
+  const Arguments how = {"rays", "design.toml", "--emitter", "collimated", "--disc-mm",
+                         "4",    "--rays",      "500",       "--split",    "1e-6"};
   const Json bare = run(plate, how);
   const Json behind = run(plate + kPlate, how);
   EXPECT_NEAR(behind["ledger"]["retroreflected"].get<double>(),
@@ -190,7 +190,7 @@ TEST_F(Shell, OthersRefuseThem) {
     EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
   EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
   EXPECT_EQ(refusal(design, {"explore", "design.toml", "-o", "out.html"}), where);
-  EXPECT_EQ(refusal(design, {"roughness", "design.toml", "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}), where);
 }
 
 TEST_F(Shell, KeysThatMakeNoSenseAreRefused) {

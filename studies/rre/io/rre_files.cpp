@@ -215,7 +215,8 @@ std::string rre_csv(const RreResult& result) {
   // The account of shells, the last one, has a column only if it is not empty.
   const bool has_shells = std::ranges::any_of(
       result.points, [](const RrePoint& p) { return p.ledger[raytrace::Account::shell_reflected] != 0.0; });
-  const std::size_t accounts = has_shells ? kAccountCount : static_cast<std::size_t>(raytrace::Account::shell_reflected);
+  const std::size_t accounts =
+      has_shells ? kAccountCount : static_cast<std::size_t>(raytrace::Account::shell_reflected);
   csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", "acceptance_half_angle_deg", "rre", "std_error",
           std::span(kAccountNames).first(accounts), "engine");
   for (const RrePoint& p : result.points)
