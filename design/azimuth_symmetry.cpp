@@ -50,8 +50,8 @@ std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
 }  // namespace
 
 std::optional<AzimuthSymmetry> azimuth_symmetry(const Design& design) {
-  if (!design.elements() || design.mask() || design.facet_planes() || design.entrance || design.wet_back ||
-      !design.surface.entrance.is_clean() || !is_unpolarised(design.light.polarisation))
+  if (!design.elements() || design.mask() || design.facet_planes() || design.entrance || !design.shells.empty() ||
+      design.wet_back || !design.surface.entrance.is_clean() || !is_unpolarised(design.light.polarisation))
     return std::nullopt;
   const geometry::PartSpec& part = design.part();
   const bool has_like_borders = design.is_infinite() || part.array.arrangement == Arrangement::single;

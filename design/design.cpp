@@ -134,6 +134,15 @@ double Design::incident_fraction(const geometry::Vec3& to_source) const {
   return std::max(0.0, axis.dot(to_source)) / axis.z();
 }
 
+bool Design::has_deflecting_shells() const {
+  return std::ranges::any_of(shells, [](const OuterShell& shell) { return !shell.is_plane_parallel(); });
+}
+
+InputLocation Design::where_shell_deflects() const {
+  const auto found = std::ranges::find_if(shells, [](const OuterShell& shell) { return !shell.is_plane_parallel(); });
+  return where(schema::path_of_entry("shell", static_cast<std::size_t>(found - shells.begin())));
+}
+
 const ArrayMask* Design::mask() const {
   return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
 }
@@ -182,6 +191,9 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
   if (design.entrance && !capabilities.entrances)
     throw InputError(design.where(design.entrance_key()),
                      what + " is not available for a part with an [entrance_surface], only for a plane entrance face");
+  if (!design.shells.empty() && !capabilities.shells)
+    throw InputError(design.where(schema::path_of_entry("shell", 0)),
+                     what + " is not available for a part behind a [[shell]]: remove the shells from the design");
   if (design.wet_back && !capabilities.wet_backs)
     throw InputError(
         design.where("wet_back.index"),

@@ -264,6 +264,25 @@ struct Substance {
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
 
+/// Shell: a separate lens in the air in front of the entrance face, such as the outer lens of a lamp.
+struct OuterShell {
+  double thickness_mm = 0.0;  ///< distance between both surfaces at the middle, along the normal of the outer surface
+  /// Distance from the inner surface, at the middle, to the next surface towards the part.
+  double gap_mm = 0.0;
+  std::string material = "PMMA";
+  std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
+  Absorption absorption_per_mm;
+  std::optional<double> outer_radius_mm;  ///< > 0: convex towards the source; empty: plane
+  std::optional<double> inner_radius_mm;  ///< > 0: convex towards the source; empty: plane
+  std::array<double, 2> wedge_deg = {};   ///< rotation of the inner surface about x and then y, relative to the outer
+  std::array<double, 2> tilt_deg = {};    ///< rotation of the whole shell about x and then y
+
+  /// Returns true if the surfaces are parallel planes, so that light keeps its direction.
+  bool is_plane_parallel() const {
+    return !outer_radius_mm && !inner_radius_mm && wedge_deg == std::array<double, 2>{};
+  }
+};
+
 /// Selected elements of a finite array that have another medium behind them.
 struct WetElements {
   double index = 1.333;  ///< refractive index of the medium behind these elements, relative to air; 1..3
@@ -364,6 +383,7 @@ struct Design {
   std::string title;   ///< empty if no title was given
   Shape shape;
   std::optional<CurvedEntrance> entrance;  ///< curved entrance face; empty for plane faces, balls and infinite arrays
+  std::vector<OuterShell> shells;          ///< in the order from the source to the part
   Substance substance;
   std::optional<WetElements> wet_back;
   Surface surface;
@@ -399,6 +419,9 @@ struct Design {
   double incident_fraction(const geometry::Vec3& to_source) const;
   /// Returns the key that determines the curved entrance face.
   std::string_view entrance_key() const;
+  /// Returns true if a shell changes the direction of light. where_shell_deflects() returns the position of this shell.
+  bool has_deflecting_shells() const;
+  InputLocation where_shell_deflects() const;
 
   // Each of these functions returns the shape, or null if the shape is of another kind.
   const ElementArray* elements() const { return std::get_if<ElementArray>(&shape); }
@@ -434,6 +457,7 @@ struct Capabilities {
   bool zones = false;   ///< parts with zones are supported, even if `solids` is false
   bool substrates = true;
   bool entrances = false;
+  bool shells = false;
   bool wet_backs = false;
 };
 /// Checks that a study supports a design.

@@ -8,7 +8,7 @@
 namespace retrace::design {
 
 geometry::Part part_of(const Design& design) {
-  require_supported(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
+  require_supported(design, {.what = {}, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
   if (design.mask() && design.facet_planes())
     throw InputError(design.where("array.mask"), "not allowed together with facets in [part]");
   if (design.mask()) return geometry::build_part(design.part(), elements_of_mask(design));

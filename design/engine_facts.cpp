@@ -7,6 +7,7 @@ raytrace::EngineFacts engine_facts(const Design& design, const raytrace::Optics*
   if (optics != nullptr) facts = raytrace::facts_of(*optics);
   facts.has_balls = design.balls() != nullptr;
   facts.has_curved_entrance = design.entrance.has_value();
+  facts.has_deflecting_shells = design.has_deflecting_shells();
   return facts;
 }
 
@@ -15,6 +16,7 @@ InputLocation position_of(const Design& design, raytrace::Obstacle obstacle) {
   switch (obstacle) {
     case balls: return design.where("element.kind");
     case curved_entrance: return design.where(design.entrance_key());
+    case deflecting_shells: return design.where_shell_deflects();
     case unequal_backs: return design.where("wet_back.index");
     case form_and_texture:
     case texture:

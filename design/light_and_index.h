@@ -1,6 +1,8 @@
 #pragma once
 
-// Wavelengths of the light of a design, material of its body, and refractive indices.
+// Wavelengths of the light of a design, and material, refractive index and absorption of its body and shells.
+
+#include <string_view>
 
 #include "design/design.h"
 #include "materials/io/material_library.h"
@@ -27,6 +29,14 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
 /// \throw InputError if the material has no data at this wavelength, or if the index is less than 1
 double index_of_body(const Design& design, const materials::Material& material, const materials::Material& air,
                      double wavelength_nm);
+
+/// Returns the Napierian absorption coefficient of a medium, for power.
+/// \param given absorption that the design specifies
+/// \param key key of `given`
+/// \param material material of the medium; it determines the absorption if the design specifies none
+/// \throw InputError at `key` if the given curve does not cover this wavelength
+double absorption_at(const Design& design, const Absorption& given, std::string_view key,
+                     const materials::Material& material, double wavelength_nm);
 
 /// Returns the wavelengths to trace: every line of the design, or a few wavelengths that represent a lamp.
 /// \throw InputError at `light.spectrum` if a spectrum is not valid

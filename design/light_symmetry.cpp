@@ -1,5 +1,6 @@
 #include "design/light_symmetry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -12,8 +13,10 @@ namespace {
 /// Returns true if the facets or the entrance face may have properties that are not symmetric although the part is.
 bool has_oriented_faces(const Design& design, const OpticalModel& model) {
   const raytrace::EngineFacts facts = engine_facts(design, &model.optics);
-  return facts.has_balls || facts.has_curved_entrance || facts.has_unequal_backs || facts.has_form ||
-         design.surface.entrance.scratch_azimuth_deg ||
+  const bool are_tilted = std::ranges::any_of(
+      design.shells, [](const OuterShell& shell) { return shell.tilt_deg != std::array<double, 2>{}; });
+  return are_tilted || facts.has_balls || facts.has_curved_entrance || facts.has_deflecting_shells ||
+         facts.has_unequal_backs || facts.has_form || design.surface.entrance.scratch_azimuth_deg ||
          std::holds_alternative<HeightMapTexture>(design.surface.texture);
 }
 

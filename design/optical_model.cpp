@@ -17,6 +17,7 @@
 #include "design/form_of_design.h"
 #include "design/light_and_index.h"
 #include "design/part_of_design.h"
+#include "design/shells_of_design.h"
 #include "surface_models/form.h"
 
 namespace retrace::design {
@@ -90,24 +91,6 @@ surface_models::ScatterModel scatter_model(const Design& design, const std::opti
   }
 }
 
-double absorption_at(const Design& design, const materials::Material& material, double wavelength_nm) {
-  const Absorption& given = design.substance.absorption_per_mm;
-  if (std::holds_alternative<std::monostate>(given)) return materials::absorption_per_mm(material, wavelength_nm);
-  if (const double* const per_mm = std::get_if<double>(&given)) return *per_mm;
-  materials::SpectralCurve curve;
-  for (const auto& [at_nm, per_mm] : std::get<std::vector<SpectralAbsorption>>(given)) {
-    curve.wavelengths_nm.push_back(at_nm);
-    curve.values.push_back(per_mm);
-  }
-  if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
-    throw InputError(
-        design.where("body.absorption_per_mm"),
-        fmt::format("must cover all wavelengths of the light, for example {} nm, but covers only {} to {} nm",
-                    shortest(wavelength_nm), shortest(curve.wavelengths_nm.front()),
-                    shortest(curve.wavelengths_nm.back())));
-  return curve.at(wavelength_nm);
-}
-
 /// Returns the complex refractive index of a coating layer, relative to air.
 /// \throw InputError at `where` if the material has no index at this wavelength
 std::complex<double> index_of_layer(const Design& design, const materials::MaterialLibrary& library,
@@ -163,8 +146,10 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
   optics.absorbing_walls = design.surface.absorbing_walls;
   optics.wavelength_nm = wavelength_nm;
   optics.lossless_entrance = design.idealisation.lossless_entrance;
-  optics.absorption_per_mm = absorption_at(design, material, wavelength_nm);
+  optics.absorption_per_mm =
+      absorption_at(design, design.substance.absorption_per_mm, "body.absorption_per_mm", material, wavelength_nm);
   optics.index = index_of_body(design, material, library.air(), wavelength_nm);
+  optics.shells = shells_at(design, library, wavelength_nm);
   optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;
@@ -314,10 +299,11 @@ std::size_t OpticalModel::nearest_wavelength() const {
 }
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library) {
-  require_supported(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
+  require_supported(design, {.what = {}, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);
+  if (!design.shells.empty()) clearances_of_shells(design, model.optics.shells, model.part, model.entrance);
   if (design.wet_back) add_wet_back(design, model);
   return model;
 }
@@ -374,6 +360,9 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
     warn_of_extrapolation(design, optics.material(), model);
     warn_of_temperature(design, optics.material(), model);
   }
+  for (std::size_t k = 0; k < design.shells.size(); ++k)
+    if (!design.shells[k].refractive_index && design.shells[k].material != design.substance.material)
+      warn_of_extrapolation(design, material_of_shell(design, library, k), model);
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
   append(model.warnings, design.warnings());

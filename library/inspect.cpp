@@ -36,6 +36,7 @@ Inspection inspect(const Design& design) {
   result.plan = drawing_of_text([held] { return held->made().plan; }, true);
   result.section = drawing_of_text([held] { return held->made().section; }, true);
   result.entrance_surface = drawing_of_text([held] { return held->made().entrance; }, true);
+  result.shells = drawing_of_text([held] { return held->made().shells; }, true);
   result.view = drawing_of_text([held] { return held->made().view; }, false);
   return result;
 }

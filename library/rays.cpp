@@ -20,7 +20,8 @@ template <class Result>
 void tell(const studies::RayResult& found, Result& result) {
   const double whole = found.ledger.incident > 0.0 ? found.ledger.incident : 1.0;
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
-    result.ledger.emplace(studies::kRayAccounts[k], found.ledger.ledger.power[k] / whole);
+    if (raytrace::is_listed(static_cast<raytrace::Account>(k), found.ledger.ledger.power[k]))
+      result.ledger.emplace(raytrace::kAccountNames[k], found.ledger.ledger.power[k] / whole);
   result.ledger.emplace(studies::kRayAccounts[studies::kMissedAccount], found.ledger.missed / whole);
   result.power = found.ledger.incident;
   result.warnings = found.warnings;

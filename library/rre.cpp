@@ -26,7 +26,8 @@ RrePoint from_study(const studies::RrePoint& point) {
                   .ledger = {},
                   .missed_target = point.missed_target};
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
-    result.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
+    if (raytrace::is_listed(static_cast<raytrace::Account>(k), point.ledger.power[k]))
+      result.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
   return result;
 }
 

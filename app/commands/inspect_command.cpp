@@ -26,6 +26,7 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
   files.add("section.svg", [&] { return drawings.section; });
   files.add("view.png", [&] { return drawings.view; });
   files.add("entrance_surface.svg", [&] { return drawings.entrance; });
+  files.add("shells.svg", [&] { return drawings.shells; });
   files.prepare();
   if (!common.out.empty()) drawings = report::design_drawings(inspection);
   append(inspection.warnings, drawings.warnings);

@@ -304,6 +304,24 @@ void set_body(Document& document, const Design& design) {
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }
 
+void set_shells(Document& document, const std::vector<OuterShell>& shells) {
+  if (!shells.empty()) document.set("shell", {});
+  for (std::size_t k = 0; k < shells.size(); ++k) {
+    const OuterShell& shell = shells[k];
+    Keys keys(document, schema::path_of_entry("shell", k));
+    keys.set("thickness_mm", shell.thickness_mm);
+    keys.set("gap_mm", shell.gap_mm);
+    keys.set_word("material", shell.material);
+    if (shell.refractive_index) keys.set("refractive_index", *shell.refractive_index);
+    if (const Value absorption = absorption_value(shell.absorption_per_mm); absorption.index() != 0)
+      keys.set("absorption_per_mm", absorption);
+    if (shell.outer_radius_mm) keys.set("outer_radius_mm", *shell.outer_radius_mm);
+    if (shell.inner_radius_mm) keys.set("inner_radius_mm", *shell.inner_radius_mm);
+    keys.set("wedge_deg", list_of(shell.wedge_deg));
+    keys.set("tilt_deg", list_of(shell.tilt_deg));
+  }
+}
+
 void set_wet_back(Document& document, const WetElements& wet) {
   Keys keys(document, "wet_back");
   keys.set("index", wet.index);
@@ -502,6 +520,7 @@ Document document_of(const Design& design) {
   if (!design.title.empty()) document.set("title", design.title);
   set_shape(document, design);
   if (design.entrance) set_entrance(document, design);
+  set_shells(document, design.shells);
   set_body(document, design);
   if (design.wet_back) set_wet_back(document, *design.wet_back);
   set_coating(document, design.surface.coating);

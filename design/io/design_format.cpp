@@ -144,6 +144,12 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kEntranceTable,
      .former = "front"},
+    {.name = "shell",
+     .meaning = "Separate lens in the air in front of the entrance face, such as the outer lens of a lamp. The shells "
+                "are given in the order from the source to the part. At most 4 are allowed.",
+     .rows = shell_rows(),
+     .presence = Presence::list,
+     .when = kEntranceTable},
     {.name = "body",
      .meaning = "Plate and material of the part, and the medium behind its retro facets.",
      .rows = body_rows(),

@@ -55,8 +55,8 @@ Shape read_shape(const Document& document) {
   return read_balls(document);
 }
 
-Absorption read_absorption(const Document& document) {
-  constexpr std::string_view key = "body.absorption_per_mm";
+/// Reads the absorption of a body or a shell.
+Absorption read_absorption(const Document& document, std::string_view key) {
   if (!document.is_list(key)) {
     const std::optional<double> per_mm = document.number_if(key);
     return per_mm ? Absorption(*per_mm) : Absorption();
@@ -236,6 +236,23 @@ std::optional<WetElements> read_wet_back(const Document& document) {
   return wet;
 }
 
+std::vector<OuterShell> read_shells(const Document& document) {
+  std::vector<OuterShell> shells;
+  for (std::size_t k = 0; k < document.count("shell"); ++k) {
+    const auto key = [&](std::string_view name) { return schema::path_in(schema::path_of_entry("shell", k), name); };
+    shells.push_back({.thickness_mm = document.number(key("thickness_mm")),
+                      .gap_mm = document.number(key("gap_mm")),
+                      .material = document.text(key("material")),
+                      .refractive_index = document.number_if(key("refractive_index")),
+                      .absorption_per_mm = read_absorption(document, key("absorption_per_mm")),
+                      .outer_radius_mm = document.number_if(key("outer_radius_mm")),
+                      .inner_radius_mm = document.number_if(key("inner_radius_mm")),
+                      .wedge_deg = pair_of(document, key("wedge_deg")),
+                      .tilt_deg = pair_of(document, key("tilt_deg"))});
+  }
+  return shells;
+}
+
 /// Returns the design of a document. Files that are named in the document are not read.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
@@ -245,11 +262,12 @@ Design resolved(std::shared_ptr<const Document> given) {
   design.title = document.text_if("title");
   design.shape = read_shape(document);
   design.entrance = read_entrance(document);
+  design.shells = read_shells(document);
   design.substance = {read_material(document),
                       read_catalogue(document),
                       document.number_if("body.refractive_index"),
                       document.number_if("body.temperature_c"),
-                      read_absorption(document),
+                      read_absorption(document, "body.absorption_per_mm"),
                       document.number("body.back_index")};
   design.wet_back = read_wet_back(document);
   design.surface = read_surface(document);

@@ -18,6 +18,7 @@ std::span<const schema::Row> part_rows();
 std::span<const schema::Row> entrance_rows();
 std::span<const schema::Row> zone_rows();
 std::span<const schema::Row> body_rows();
+std::span<const schema::Row> shell_rows();
 std::span<const schema::Row> wet_back_rows();
 std::span<const schema::Row> layer_rows();
 std::span<const schema::Row> entrance_face_rows();

@@ -402,6 +402,7 @@ constexpr schema::Words kMirrorWord = {"mirror"};
 constexpr schema::Words kFacetCoatingKeys = {"body.facet_coating"};
 constexpr schema::Words kIndexKeys = {"body.material", "body.catalogue"};
 constexpr schema::Words kAbsorptionKeys = {kAbsorption};
+constexpr schema::Words kShellKeys = {"shell", "array.extent", "idealisation.entrance"};
 constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
@@ -521,6 +522,12 @@ constexpr schema::Rule kRules[] = {
                        .is_refinement = true},
     schema::Check{kAbsorptionKeys, "The wavelengths of an absorption curve must be in ascending order.",
                   check_by<check_absorption>},
+    schema::Check{kShellKeys,
+                  "At most 4 shells are allowed. Their radii must not be 0. In front of an infinite array, shells must "
+                  "be plane-parallel and must not be tilted. With `idealisation.entrance` = `\"lossless\"`, none are "
+                  "allowed. The surfaces of a shell must extend over the whole part and must not cross each other, the "
+                  "next shell or the part.",
+                  check_by<check_shells>},
     schema::Check{kSpectrumKeys, "A list of spectral lines must contain each wavelength only once.",
                   check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",

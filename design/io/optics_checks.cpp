@@ -59,15 +59,53 @@ void check_material(const Document& document) {
     document.fail("body.material", "must be the name of a material, such as \"PMMA\", got \"\"");
 }
 
-void check_absorption(const Document& document) {
-  if (!document.is_list(kAbsorption)) return;
-  const std::vector<std::vector<double>> curve = document.rows(kAbsorption);
+namespace {
+
+/// Checks that an absorption by wavelength is a valid curve.
+void check_absorption_at(const Document& document, std::string_view key) {
+  if (!document.is_list(key)) return;
+  const std::vector<std::vector<double>> curve = document.rows(key);
   for (std::size_t k = 1; k < curve.size(); ++k)
     if (!(curve[k][0] > curve[k - 1][0]))
-      document.fail(kAbsorption, fmt::format("the wavelengths must be in ascending order, got {} nm after {} nm",
-                                             shortest(curve[k][0]), shortest(curve[k - 1][0])));
-  if (curve.size() < 2)
-    document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one pair");
+      document.fail(key, fmt::format("the wavelengths must be in ascending order, got {} nm after {} nm",
+                                     shortest(curve[k][0]), shortest(curve[k - 1][0])));
+  if (curve.size() < 2) document.fail(key, "must be a number or a list of two or more pairs, got a list of one pair");
+}
+
+/// Checks that a shell in front of an infinite array is plane-parallel and not tilted.
+void check_unbounded_shell(const Document& document, const std::string& shell) {
+  constexpr std::string_view why = "not allowed in front of an infinite array: the shell must be plane-parallel";
+  for (const std::string_view name : {"outer_radius_mm", "inner_radius_mm"})
+    if (document.has(schema::path_in(shell, name))) document.fail(schema::path_in(shell, name), why);
+  for (const std::string_view name : {"wedge_deg", "tilt_deg"}) {
+    const std::string key = schema::path_in(shell, name);
+    for (const double angle_deg : document.numbers(key))
+      if (angle_deg != 0.0)
+        document.fail(key, "must be [0, 0] in front of an infinite array, got the angle " + shortest(angle_deg));
+  }
+}
+
+}  // namespace
+
+void check_absorption(const Document& document) {
+  check_absorption_at(document, kAbsorption);
+}
+
+void check_shells(const Document& document) {
+  constexpr std::size_t max_shells = 4;
+  const std::size_t count = document.count("shell");
+  if (count == 0) return;
+  if (count > max_shells) document.fail("shell", fmt::format("must be at most {}, got {}", max_shells, count));
+  if (document.text("idealisation.entrance") == "lossless")
+    document.fail("shell", "not allowed together with idealisation.entrance = \"lossless\"");
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string shell = schema::path_of_entry("shell", k);
+    for (const std::string_view name : {"outer_radius_mm", "inner_radius_mm"})
+      if (const std::string key = schema::path_in(shell, name); document.number_if(key) == 0.0)
+        document.fail(key, "must not be 0: leave it out for a plane surface, got 0");
+    check_absorption_at(document, schema::path_in(shell, "absorption_per_mm"));
+    if (document.text_if("array.extent") == "infinite") check_unbounded_shell(document, shell);
+  }
 }
 
 void check_lines(const Document& document) {

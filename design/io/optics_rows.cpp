@@ -41,6 +41,13 @@ constexpr Condition kWithLayerIndex[] = {is_given("refractive_index")};
 constexpr Condition kIndexOfMaterial[] = {
     is_absent("refractive_index", "not allowed together with refractive_index, which holds at every temperature")};
 
+// The body and shells give their media in the same way.
+constexpr NumberRange kIndexOfBody{.low = 1.0, .high = 10.0};
+constexpr Kind kAbsorptionNumber = Number{kAtLeastZero};
+constexpr Kind kAbsorptionCurve = Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2};
+constexpr Row kAbsorptionByWavelength = {"absorption_per_mm", kAbsorptionCurve, kNone,
+                                         "Absorption coefficient as a function of wavelength."};
+
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
      "Thickness of the plate between the entrance face and the nominal rims of the elements. With an "
@@ -53,25 +60,57 @@ constexpr Row kBodyRows[] = {
      "Glass catalogue in the AGF format, as published by glass makers. `material` is then the name of a glass in the "
      "catalogue. Alternatively, a record of refractiveindex.info (`.yml`). Such a record has only one material, and "
      "`material` is not needed."},
-    {"refractive_index", Number{{.low = 1.0, .high = 10.0}}, Computed{"that of the material"},
+    {"refractive_index", Number{kIndexOfBody}, Computed{"that of the material"},
      "Refractive index of the body relative to air. It takes precedence over the index of the material."},
     {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"the temperature of the material's data"},
      "Temperature of the part and the surrounding air. The refractive indices of both depend on it. All lengths of the "
      "design apply at this temperature. Only for materials with thermo-optic coefficients, and not together with "
      "`refractive_index`.",
      kIndexOfMaterial},
-    {"absorption_per_mm", Number{kAtLeastZero}, Computed{"that of the material"},
+    {"absorption_per_mm", kAbsorptionNumber, Computed{"that of the material"},
      "Napierian absorption coefficient of the body, for power. It takes precedence over the absorption of the "
      "material. A list of two or more `[wavelength_nm, absorption_per_mm]` gives the coefficient as a function of "
      "wavelength (for coloured lenses), with linear interpolation. The list must cover all wavelengths of the light."},
-    {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
-     "Absorption coefficient as a function of wavelength."},
+    kAbsorptionByWavelength,
     {"facet_coating", Word{kCoatings}, "none",
      "Coating of the retro facets. `\"aluminium\"`: an opaque film that absorbs all light that it does not reflect. "
      "Other layers are specified in `[coating]`."},
     {"back_index", Number{{.low = 1.0, .high = 3.0}}, 1.0,
      "Refractive index, relative to air, of the medium behind the retro facets, such as water (1.333) or glue. The "
      "medium at the entrance face and at the sides of the part is always air."}};
+
+constexpr NumberRange kGapOfShell{.low = 0.0, .high = 1e6};
+constexpr NumberRange kRadiusOfShell{.low = -1e6, .high = 1e6};
+constexpr NumberRange kWedge{.low = -30.0, .high = 30.0};
+constexpr NumberRange kTilt{.low = -60.0, .high = 60.0};
+constexpr double kNoRotation[] = {0.0, 0.0};
+
+constexpr Row kShellRows[] = {
+    {"thickness_mm", kSize, kRequired,
+     "Distance between both surfaces at the middle of the part, along the normal of the outer surface. The middle is "
+     "the centre of the outline's bounding box."},
+    {"gap_mm", Number{kGapOfShell}, kRequired,
+     "Distance at the middle from the inner surface to the next surface towards the part: the outer surface of the "
+     "next shell, or the entrance surface."},
+    {"material", Text{}, "PMMA", "Name of the material. `retrace list materials` shows the available names."},
+    {"refractive_index", Number{kIndexOfBody}, Computed{"that of the material"},
+     "Refractive index of the shell relative to air. It takes precedence over the index of the material."},
+    {"absorption_per_mm", kAbsorptionNumber, Computed{"that of the material"},
+     "Napierian absorption coefficient of the shell, for power. A list of two or more `[wavelength_nm, "
+     "absorption_per_mm]` gives the coefficient as a function of wavelength, as in `[body]`."},
+    kAbsorptionByWavelength,
+    {"outer_radius_mm", Number{kRadiusOfShell}, Computed{"plane"},
+     "Radius of the sphere on the side of the source. It is above 0 if the surface is convex towards the source, and "
+     "below 0 if it is concave; not 0. The surface must extend over the whole part."},
+    {"inner_radius_mm", Number{kRadiusOfShell}, Computed{"plane"},
+     "Radius of the sphere on the side of the part. It is above 0 if this surface, like an outer surface, is curved "
+     "towards the source; not 0."},
+    {"wedge_deg", Numbers{2, kWedge, "angles, about x and about y"}, std::span<const double>(kNoRotation),
+     "`[about x, about y]`: rotation of the inner surface relative to the outer surface, about the middle of the inner "
+     "surface."},
+    {"tilt_deg", Numbers{2, kTilt, "angles, about x and about y"}, std::span<const double>(kNoRotation),
+     "`[about x, about y]`: rotation of the whole shell about the middle of its inner surface, first about x and then "
+     "about y."}};
 
 constexpr Condition kWithFraction[] = {is_given("fraction")};
 constexpr NumberRange kPlaceInPart{.low = -1e6, .high = 1e6};
@@ -265,6 +304,9 @@ constexpr Row kIdealisationRows[] = {
 
 std::span<const Row> body_rows() {
   return kBodyRows;
+}
+std::span<const Row> shell_rows() {
+  return kShellRows;
 }
 std::span<const Row> wet_back_rows() {
   return kWetBackRows;

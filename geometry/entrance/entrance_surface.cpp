@@ -376,6 +376,20 @@ int cells_to_resolve(const EntranceSurface& surface, const Polygon& outline) {
   return cells;
 }
 
+double height_mm(const Entrance& entrance, const Vec2& point_mm) {
+  if (const auto* const surface = std::get_if<std::shared_ptr<const EntranceSurface>>(&entrance))
+    return (*surface)->at(point_mm).height_mm;
+  const SurfacePatch& mesh = *std::get<std::shared_ptr<const SurfacePatch>>(entrance);
+  for (const PatchFacet& facet : mesh.facets) {
+    Polygon triangle;
+    for (std::uint32_t k = 0; k < facet.corner_count; ++k)
+      triangle.emplace_back(mesh.vertices[mesh.corners[facet.first_corner + k]].head<2>());
+    if (contains(triangle, point_mm))
+      return (facet.offset_mm - facet.normal.head<2>().dot(point_mm)) / facet.normal.z();
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline) {
   if (const auto* const mesh = std::get_if<std::shared_ptr<const SurfacePatch>>(&entrance))
     return range_of_entrance_mesh(**mesh, outline);

@@ -86,6 +86,9 @@ using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::share
 /// no face.
 using EntranceHeights = std::function<double(const Vec2& point_mm)>;
 
+/// Returns the height of an entrance surface at a point of the part frame, or NaN where there is no surface.
+double height_mm(const Entrance& entrance, const Vec2& point_mm);
+
 /// Plane z = height_mm + slope * (x, y) in the part frame.
 struct TouchingPlane {
   double height_mm = 0.0;

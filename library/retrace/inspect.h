@@ -15,9 +15,10 @@ struct Inspection {
   Warnings warnings;
   std::string json;   ///< JSON document retrace.inspect/2
   std::string table;  ///< summary as text
-  Drawing plan;       ///< SVG; each of the first three drawings is empty if it does not apply to the design
+  Drawing plan;       ///< SVG; each of the first four drawings is empty if it does not apply to the design
   Drawing section;
   Drawing entrance_surface;  ///< profile of a curved entrance surface
+  Drawing shells;            ///< section through the shells in front of the part
   Drawing view;              ///< view in three dimensions; PNG
 };
 

@@ -9,6 +9,8 @@ namespace retrace::live {
 OpenedDesign::OpenedDesign(std::string toml, const std::string& source, const materials::MaterialLibrary& library)
     : toml_(std::move(toml)), design_(design::parse_design(toml_, source)), library_(library) {
   design::require_no_files(design_, "which the live page cannot read: use the program retrace");
+  design::require_supported(
+      design_, {.what = "the live page", .balls = true, .solids = true, .entrances = true, .wet_backs = true});
   if (!design_.balls()) model_ = design::make_model(design_, library_);
   const raytrace::EngineFacts facts = design::engine_facts(design_, model_ ? &model_->optics : nullptr);
   if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts))

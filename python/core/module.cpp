@@ -170,6 +170,7 @@ void bind_part(py::module_& module) {
       .def_readonly("plan", &Inspection::plan)
       .def_readonly("section", &Inspection::section)
       .def_readonly("entrance_surface", &Inspection::entrance_surface)
+      .def_readonly("shells", &Inspection::shells)
       .def_readonly("view", &Inspection::view);
   module.def("inspect", [](const Design& design) {
     return watched(py::none(), 0, [design](const Running&) { return inspect(design); });

@@ -94,7 +94,7 @@ class MaterialResult(Result):
 
 class Inspection(Result):
     """Properties of a design that need no ray tracing. The drawings are "plan", "section",
-    "entrance_surface" and "view"."""
+    "entrance_surface", "shells" and "view"."""
 
     _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
 
@@ -156,6 +156,7 @@ def inspect(design: AnyDesign) -> Inspection:
             "plan": core.plan,
             "section": core.section,
             "entrance_surface": core.entrance_surface,
+            "shells": core.shells,
             "view": core.view,
         },
     )

@@ -41,11 +41,13 @@ void CellEntrance::reserve(std::size_t count) {
 }
 
 void CellEntrance::enter(RayStreams& streams, CellRun& run) {
+  const auto count = static_cast<double>(descending_.size());
+  run.tally.add(setup_.arrival_losses, Account::transmitted, count);
   if (contaminated_) return enter_contaminated(streams, run);
   const LightSetup::Entry& entry = setup_.entry;
-  const auto count = static_cast<double>(descending_.size());
   run.tally.entrance_reflected[entry.reflected_cone] += count * entry.reflected;
   run.tally.other[Account::absorbed] += count * entry.absorbed;
+  run.tally.add(entry.reflected_losses, Account::returned_elsewhere, count);
   if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, count * entry.reflected.i, run.tally.score);
   const lanes::Rays rays = descending_.rays();
   for (std::size_t k = 0; k < descending_.size(); ++k) set_ray(rays, k, {entry.direction, entry.light});
@@ -86,7 +88,7 @@ void CellEntrance::meet(const CellStep& step) {
     step.streams.hand_over(step.rays(), step.size(), step.batch.hits.labels(), label_of(Hit::limit), true,
                            step.stream().scattered);
   if (contaminated_) return meet_contaminated(step);
-  if (!setup_.optics.has_bare_entrance()) return meet_layers(step);
+  if (!setup_.optics.has_bare_entrance() || !setup_.optics.shells.empty()) return meet_layers(step);
   meet_bare(step);
 }
 
@@ -115,8 +117,8 @@ void CellEntrance::meet_bare(const CellStep& step) {
   descend(scattered, step.streams, run);
 }
 
-// The following functions process rays one by one. They are used for entrance faces with layers and for entrance faces
-// that scatter. The computations take so long that SIMD would save little time.
+// The following functions process rays one by one. They are used for entrance faces with layers, behind shells and for
+// entrance faces that scatter. The computations take so long that SIMD would save little time.
 
 /// Returns ray k at the entrance face. The power that the material absorbs on the path to the face is added to the
 /// ledger.
@@ -151,6 +153,7 @@ void CellEntrance::meet_layers(const CellStep& step) {
     const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return run.random(); });
     if (branch != Branch::reflected) {
       const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
+      run.tally.add(setup_.pass_shells_outward(transmitted, out), Account::returned_elsewhere);
       returned[setup_.cone_of(out)] += in_source_axes(transmitted, out);
       if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), run.tally.score);
       if (run.observer != nullptr)
@@ -206,9 +209,11 @@ void CellEntrance::meet_contaminated(const CellStep& step) {
         queue(rays, k, position, ray);
         continue;
       }
+      Light light = ray.light;
+      tally.add(setup_.pass_shells_outward(light, ray.direction), Account::returned_elsewhere);
       (ray.scattered ? tally.scattered : tally.returned)[setup_.cone_of(ray.direction)] +=
-          in_source_axes(ray.light, ray.direction);
-      if (setup_.score != nullptr) setup_.score->add(ray.direction, ray.light.power(), tally.score);
+          in_source_axes(light, ray.direction);
+      if (setup_.score != nullptr) setup_.score->add(ray.direction, light.power(), tally.score);
     }
   }
   descend_queued(step.streams, step.run);

@@ -26,6 +26,7 @@ std::string_view engine_name(Engine engine) {
 EngineFacts facts_of(const Optics& optics) {
   const auto* const rough = std::get_if<surface_models::HarveyShack>(&optics.facet_scatter);
   EngineFacts facts;
+  facts.has_deflecting_shells = deflect(optics.shells);
   facts.has_unequal_backs = !optics.has_uniform_backing();
   facts.has_form = !optics.facet_form.is_plane();
   facts.has_texture = !optics.is_smooth();
@@ -45,6 +46,7 @@ std::optional<Obstacle> obstacle_for(Engine engine, const EngineFacts& facts) {
   const std::pair<Obstacle, bool> rules[] = {
       {Obstacle::balls, facts.has_balls && !chooses},
       {Obstacle::curved_entrance, facts.has_curved_entrance && (beams || cell)},
+      {Obstacle::deflecting_shells, facts.has_deflecting_shells && (beams || cell)},
       {Obstacle::unequal_backs, facts.has_unequal_backs && (beams || cell)},
       {Obstacle::plain_sampling, facts.needs_plain_sampling && (beams || cell || facts.has_balls)},
       {Obstacle::unequal_cells, facts.has_unequal_cells && cell},
@@ -62,6 +64,7 @@ std::string_view subject_of(Obstacle obstacle) {
   switch (obstacle) {
     case Obstacle::balls: return "balls";
     case Obstacle::curved_entrance: return "curved entrance surfaces";
+    case Obstacle::deflecting_shells: return "shells that change the direction of light";
     case Obstacle::unequal_backs: return "parts whose elements have different media behind them";
     case Obstacle::plain_sampling: return "plain sampling points";
     case Obstacle::unequal_cells: return "parts without an inner region of identical elements";

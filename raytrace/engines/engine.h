@@ -32,6 +32,7 @@ constexpr bool may_be_exact(Engine requested) {
 struct EngineFacts {
   bool has_balls = false;  ///< true: the model consists of balls; false: it is a part with an entrance face
   bool has_curved_entrance = false;
+  bool has_deflecting_shells = false;         ///< shells in front of the part change the direction of light
   bool has_unequal_backs = false;             ///< the medium behind the elements is not the same for all of them
   bool has_unequal_cells = false;             ///< MonteCarlo::cell_supports() is false for the part
   bool has_form = false;                      ///< retro facets deviate from planes
@@ -50,6 +51,7 @@ EngineFacts facts_of(const Optics& optics);
 enum class Obstacle {
   balls,
   curved_entrance,
+  deflecting_shells,
   unequal_backs,
   plain_sampling,
   unequal_cells,

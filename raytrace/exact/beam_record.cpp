@@ -25,10 +25,14 @@ void BeamRecord::enter() {
   const LightSetup::Entry& entry = scene_.setup.entry;
   tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
+  tally_.add(scene_.setup.arrival_losses, Account::transmitted);
+  tally_.add(entry.reflected_losses, Account::returned_elsewhere);
   if (observer_ && entry.reflected.i > 0.0) observe_entrance_reflection();
 }
 
-void BeamRecord::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
+void BeamRecord::leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction) {
+  tally_.add(scene_.setup.pass_shells_outward(light, direction), Account::returned_elsewhere,
+             beam.instance_count() * transmission_of(beam));
   const std::size_t cone = scene_.setup.cone_of(direction);
   const Stokes stokes = transmission_of(beam) * in_source_axes(light, direction);
   tally_.returned[cone] += beam.instance_count() * stokes;

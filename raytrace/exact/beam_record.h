@@ -40,7 +40,7 @@ class BeamRecord {
   void enter();
   /// Records light that leaves through the entrance face.
   /// \param direction direction of the light in air
-  void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
+  void leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction);
   /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.
   void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.instance_count() * power_of(beam); }
 

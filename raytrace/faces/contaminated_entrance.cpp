@@ -276,8 +276,10 @@ void ContaminatedEntrance::meet_drop(Ray ray, Event& event) const {
 
 void add_entrance_reflection(const LightSetup& setup, const Ray& ray, Tally& tally) {
   std::vector<Stokes>& account = ray.scattered ? tally.scattered : tally.entrance_reflected;
-  account[setup.cone_of(ray.direction)] += in_source_axes(ray.light, ray.direction);
-  if (setup.score != nullptr) setup.score->add(ray.direction, ray.light.power(), tally.score);
+  Light light = ray.light;
+  tally.add(setup.pass_shells_outward(light, ray.direction), Account::returned_elsewhere);
+  account[setup.cone_of(ray.direction)] += in_source_axes(light, ray.direction);
+  if (setup.score != nullptr) setup.score->add(ray.direction, light.power(), tally.score);
 }
 
 }  // namespace retrace::raytrace

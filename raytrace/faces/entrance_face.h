@@ -37,6 +37,9 @@ class EntranceFace {
   /// Returns the height of the plane in which the incident beam crosses the outline. The plane touches the surface from
   /// above. It is horizontal unless the surface is inclined.
   double beam_height_mm(const Vec2& position_mm) const { return range_.beam_height_mm(position_mm + centre_mm_); }
+  /// Returns the height at the middle of the part, the centre of the outline's bounding box. Returns the maximum height
+  /// if this point is outside of the outline.
+  double middle_height_mm() const;
 
  protected:
   EntranceFace(const geometry::EntranceRange& range, const Vec2& centre_mm) : range_(range), centre_mm_(centre_mm) {}

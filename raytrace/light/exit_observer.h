@@ -10,8 +10,8 @@ namespace retrace::raytrace {
 /// Light that leaves the part and does not meet it again.
 struct ExitEvent {
   Account account = Account::returned_elsewhere;  ///< `retroreflected` means inside the widest cone
-  /// Point where the light leaves, relative to the centre of the entrance face in x and y. In an infinite part, the
-  /// point may be in any period.
+  /// Point where the light leaves the part or, if it crosses shells, the outermost shell. The point is relative to the
+  /// centre of the entrance face in x and y. In an infinite part, the point may be in any period.
   const Vec3& position;
   const Vec3& direction;             ///< unit vector in air
   const Light& light;                ///< its power is a fraction of the power at the start of the path

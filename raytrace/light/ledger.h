@@ -18,10 +18,12 @@ enum class Account : std::size_t {
   transmitted,         ///< left through facets, inner walls and flat parts of the back
   absorbed,
   truncated,  ///< not traced further: power below the cut-off, or too many interfaces
-  lost        ///< missed every face from inside the part; 0 unless there is a defect
+  lost,       ///< missed every face from inside the part; 0 unless there is a defect
+  /// reflected at surfaces of shells (separate lenses in front of the part), and not traced further; 0 without shells
+  shell_reflected
 };
 
-inline constexpr std::size_t kAccountCount = 9;
+inline constexpr std::size_t kAccountCount = 10;
 
 /// Maximum `lost` power of a valid run.
 inline constexpr double kLostLimit = 1e-9;
@@ -29,7 +31,12 @@ inline constexpr double kLostLimit = 1e-9;
 /// Names of the accounts in files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
-    "absorbed",       "truncated",      "lost"};
+    "absorbed",       "truncated",      "lost",          "shell_reflected"};
+
+/// Returns true if files contain an account. The account of shells is omitted if it is empty.
+constexpr bool is_listed(Account account, double power) {
+  return account != Account::shell_reflected || power != 0.0;
+}
 
 /// Power by account, as a fraction of the incident power.
 struct Ledger {

@@ -119,6 +119,12 @@ void Tally::add(const Tally& more) {
   misses += more.misses;
 }
 
+void Tally::add(const ShellLosses& losses, Account missed, double factor) {
+  other[Account::shell_reflected] += factor * losses.reflected;
+  other[Account::absorbed] += factor * losses.absorbed;
+  other[missed] += factor * losses.missed;
+}
+
 void Tally::clear() {
   for (std::vector<Stokes>* const sums : {&returned, &scattered, &entrance_reflected})
     std::fill(sums->begin(), sums->end(), Stokes{});
@@ -155,7 +161,11 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
                        const Illumination& illumination, const std::vector<double>& cones_deg)
     : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
   to_source = direction_to_source(illumination);
-  incident = light_of_beam(illumination.stokes, to_source);
+  CoherentLight arriving;
+  static_cast<Light&>(arriving) = light_of_beam(illumination.stokes, to_source);
+  arriving.jones(1, 1) = -1.0;  // see light_of_beam()
+  if (!deflect(optics.shells)) arrival_losses = pass_plates(optics.shells, ShellPassage::to_part, -to_source, arriving);
+  incident = arriving;
   for (const double half_angle_deg : cones_deg) {
     const double chord = 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad());
     cone_chord2.push_back(chord * chord * (1.0 + 1e-9));  // directions on the edge belong to the cone despite rounding
@@ -166,7 +176,7 @@ LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const 
     const Vec3 normal(along.y(), -along.x(), 0.0);
     sides.push_back({normal, normal.head<2>().dot(a)});
   }
-  entry = enter(illumination.stokes);
+  entry = enter(arriving);
 }
 
 std::size_t LightSetup::cone_of(const Vec3& direction, const Vec3& back) const {
@@ -176,15 +186,13 @@ std::size_t LightSetup::cone_of(const Vec3& direction, const Vec3& back) const {
   return k;
 }
 
-LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
+/// Returns the light after it has met the entrance face.
+/// \param arriving light in front of the face
+LightSetup::Entry LightSetup::enter(const CoherentLight& arriving) const {
   const Vec3 down = -to_source;
   const double ratio = 1.0 / optics.index;
   const materials::FresnelCoefficients f = fresnel_at_entrance(optics, false, to_source.z());
-  CoherentLight light;
-  light.stokes = stokes;
-  light.stokes.u = -stokes.u;  // the p axis, direction x s, is opposite to the second axis of the source
-  light.jones(1, 1) = -1.0;
-  light.s_axis = source_axis(to_source);
+  CoherentLight light = arriving;
   light.rotate_basis_to_interface(down, Vec3::UnitZ());
   Entry entered;
   entered.direction = refracted(down, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
@@ -194,6 +202,7 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   if (optics.lossless_entrance) return entered;
   const CoherentLight reflected = light.reflected(f);
   CoherentLight seen = reflected;
+  if (!deflect(optics.shells)) entered.reflected_losses = pass_shells_outward(seen, entered.reflected_direction);
   seen.rotate_basis_to_axis(entered.reflected_direction, source_axis(entered.reflected_direction));
   entered.reflected = seen.stokes;
   entered.reflected_jones = seen.jones;

@@ -32,7 +32,9 @@ struct LightSetup {
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
-  Light incident;                         ///< incident light, which travels along -to_source
+  /// Light of the beam, which travels along -to_source. If all shells are plane-parallel, it is the light behind them.
+  Light incident;
+  ShellLosses arrival_losses;             ///< power that plane-parallel shells take from the incident light
   const DirectionScore* score = nullptr;  ///< function that is summed over the light that leaves; may be null
   std::vector<double> cone_chord2;        ///< per cone: squared distance between unit vectors to its edge and its axis
 
@@ -55,12 +57,22 @@ struct LightSetup {
     /// Jones matrix of the reflection. The first axis of the incident field is source_axis(to_source). The first axis
     /// of the reflected field is source_axis(reflected_direction).
     JonesMatrix reflected_jones = JonesMatrix::Zero();
-    double absorbed = 0.0;  ///< power that the layers on the entrance face absorb
+    double absorbed = 0.0;         ///< power that the layers on the entrance face absorb
+    ShellLosses reflected_losses;  ///< power that plane-parallel shells take from the reflected light
   };
   Entry entry;
 
+  /// Reduces light that leaves through the entrance face to the light that plane-parallel shells transmit.
+  /// \param direction direction of the light in air
+  /// \pre !deflect(optics.shells)
+  template <class AnyLight>
+  ShellLosses pass_shells_outward(AnyLight& light, const Vec3& direction) const {
+    return optics.shells.empty() ? ShellLosses{}
+                                 : pass_plates(optics.shells, ShellPassage::from_part, direction, light);
+  }
+
  private:
-  Entry enter(const Stokes& stokes) const;
+  Entry enter(const CoherentLight& light) const;
 };
 
 /// Sums of power over paths or beams. Light that leaves through the entrance face is stored per acceptance cone, so
@@ -82,6 +94,10 @@ struct Tally {
   std::uint64_t segments = 0;              ///< number of straight ray segments traced
   std::uint64_t misses = 0;                ///< number of rays that missed every face although faces surround them
   void add(const Tally& more);
+  /// Adds power that light has lost in shells to the accounts.
+  /// \param missed account of the light that has missed a surface of a shell
+  /// \param factor factor by which the losses are multiplied
+  void add(const ShellLosses& losses, Account missed, double factor = 1.0);
   /// Sets all sums to 0.
   void clear();
   /// Returns the ledger for one cone. Its powers have the unit of the sums of this tally.

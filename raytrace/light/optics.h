@@ -7,6 +7,7 @@
 #include "core/angle.h"
 #include "materials/thin_film.h"
 #include "raytrace/light/entrance_condition.h"
+#include "raytrace/light/shells.h"
 #include "raytrace/light/stokes.h"
 #include "surface_models/facet_form.h"
 #include "surface_models/scatter/scatter_model.h"
@@ -33,6 +34,7 @@ struct Optics {
   surface_models::ScatterModel facet_scatter;  ///< scattering by the texture of retro facets
   surface_models::FacetForm facet_form;        ///< deviation of retro facets from their planes
   double wavelength_nm = 587.56;               ///< in vacuum; used only for scattering
+  Shells shells;                               ///< separate lenses in front of the entrance face
   std::shared_ptr<const WetBack> wet;          ///< elements whose medium behind the back has another index than
                                                ///< `back_index`; null if there are none
 

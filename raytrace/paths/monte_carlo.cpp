@@ -70,7 +70,8 @@ MonteCarlo::TraceTask MonteCarlo::one_by_one(const PathSetup& setup, const Sampl
     for (std::uint32_t ray = task.first; ray < task.last; ++ray) {
       if (cancel != nullptr && cancel->requested()) return std::nullopt;
       const std::array<double, 2> point = is_plain ? random_point(seed, task.replicate, ray) : square(ray);
-      walker.trace(scene_->entrance(point), {seed, kChoiceStream}, task.replicate, ray);
+      walker.trace(setup.lit_region ? (*setup.lit_region)(point) : scene_->entrance(point), {seed, kChoiceStream},
+                   task.replicate, ray);
     }
     return tally;
   };
@@ -151,6 +152,10 @@ MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illum
 
 MonteCarlo::Run::~Run() = default;
 
+double MonteCarlo::Run::beam_area_ratio() const {
+  return impl_->paths && impl_->paths->lit_region ? impl_->paths->lit_region->area_ratio() : 1.0;
+}
+
 bool MonteCarlo::Run::advance() {
   return impl_->rounds->advance();
 }
@@ -169,7 +174,9 @@ MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& ill
                                    Progress* progress) const {
   Run run(*this, optics, illumination, cones_deg, sampling, policy, cancel, score, progress);
   while (!run.advance()) continue;
-  return run.result();
+  MonteCarloResult result = run.result();
+  result.beam_area_ratio = run.beam_area_ratio();
+  return result;
 }
 
 }  // namespace retrace::raytrace

@@ -65,6 +65,8 @@ class MonteCarlo {
     /// Traces one more round, see Rounds::advance().
     bool advance();
     const MonteCarloResult& result() const;
+    /// Returns MonteCarloResult::beam_area_ratio.
+    double beam_area_ratio() const;
     /// Returns the estimated total work, see Rounds::expected_segments().
     double expected_segments() const;
 

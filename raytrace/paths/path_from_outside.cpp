@@ -43,9 +43,15 @@ bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std
   static_cast<Ray&>(state) = ray;
   state.position = position;
   state.inside = false;
+  const ShellEntry entry = enter_shells(state);
+  if (entry == ShellEntry::stopped) return true;
   const bool meets = setup_.infinite() ? arrive_at_sheet(state) : arrive_at_body(state);
   if (meets) follow_pending();
-  return meets;
+  if (meets || entry == ShellEntry::outside) return meets;
+  // The shells have taken a part of the light. The rest passes beside the part.
+  report_exit(Account::transmitted, state, state.direction, state.light);
+  finish(state, Account::transmitted);
+  return true;
 }
 
 double PathWalker::start_tolerance(const Vec3& position) const {

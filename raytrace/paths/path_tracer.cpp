@@ -47,6 +47,10 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
   if (how.entrance.scatters()) contaminated_entrance.emplace(how);
+  if (!how.shells.empty()) middle_height_mm = curved != nullptr ? curved->middle_height_mm() : thickness_mm;
+  if (deflect(how.shells))
+    lit_region.emplace(how.shells, to_source, geometry::moved(part.outline, -centre),
+                       (curved != nullptr ? curved->highest_mm() : thickness_mm) - middle_height_mm);
   for (const geometry::Polygon& piece : part.entrance_pieces)
     entrance_pieces.push_back(geometry::moved(piece, -centre));
   // The top is at the same height as the entrance face.
@@ -113,6 +117,8 @@ void PathWalker::follow_pending() {
 }
 
 void PathWalker::enter(const Vec2& entry_mm) {
+  if (setup_.lit_region) return enter_through_shells(entry_mm);
+  tally_.add(setup_.arrival_losses, Account::transmitted);
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
@@ -123,6 +129,7 @@ void PathWalker::enter(const Vec2& entry_mm) {
   const LightSetup::Entry& entry = setup_.entry;
   tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
+  tally_.add(entry.reflected_losses, Account::returned_elsewhere);
   if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, entry.reflected.i, tally_.score);
   state.direction = entry.direction;
   state.light = entry.light;
@@ -366,6 +373,16 @@ bool PathWalker::meet_entrance(State& state) {
 /// \param state position of the light on the face
 /// \param direction direction of the light in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
+  if (!setup_.optics.shells.empty()) {
+    const std::optional<State> outside = beyond_shells(state, light, direction);
+    if (outside) record_return(*outside, outside->light, outside->direction);
+  } else {
+    record_return(state, light, direction);
+  }
+}
+
+/// Records light that leaves through the entrance face and through all shells.
+void PathWalker::record_return(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   returned(state)[cone] += in_source_axes(light, direction);
   const Account outside = state.scattered ? Account::scattered_out : Account::returned_elsewhere;
@@ -375,6 +392,16 @@ void PathWalker::leave(const State& state, const Light& light, const Vec3& direc
 
 /// Records light that the entrance face reflects before the light enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
+  if (!setup_.optics.shells.empty()) {
+    const std::optional<State> outside = beyond_shells(state, light, direction);
+    if (outside) record_front_reflection(*outside, outside->light, outside->direction);
+  } else {
+    record_front_reflection(state, light, direction);
+  }
+}
+
+/// Records light that the entrance face has reflected and that has left through all shells.
+void PathWalker::record_front_reflection(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
   (state.scattered ? tally_.scattered : tally_.entrance_reflected)[cone] += in_source_axes(light, direction);
   const Account outside = state.scattered ? Account::scattered_out : Account::front_specular;

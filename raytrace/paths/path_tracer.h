@@ -16,6 +16,7 @@
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
+#include "raytrace/sampling/lit_region.h"
 
 namespace retrace::raytrace {
 
@@ -28,6 +29,8 @@ struct PathSetup : LightSetup {
   const BackSurface& surface;
   const EntranceFace* entrance_face = nullptr;  ///< curved entrance face; null for the plane z = thickness_mm
   std::optional<ContaminatedEntrance> contaminated_entrance;  ///< set if the plane entrance face scatters light
+  std::optional<LitRegion> lit_region;  ///< set if shells change the direction of light: region of the incident beam
+  double middle_height_mm = 0.0;        ///< height of the entrance surface at the middle of the part, see Shell
   PathPolicy policy;
   Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
   double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
@@ -72,7 +75,8 @@ class PathWalker {
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 
   /// Traces light of power 1 that comes from any direction: from above, from a side, from below, or from a point inside
-  /// the part. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction to the
+  /// the part. Light that starts in front of the outermost shell passes the shells first; all other light starts behind
+  /// them. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction to the
   /// source. Light that the first face reflects from outside is a branch of the path. Its power is added to
   /// `front_specular` at the entrance face, to `side_exit` at sides, and to `transmitted` at the back.
   /// \return false if the light does not meet the part; it is then not added to any account
@@ -132,6 +136,14 @@ class PathWalker {
   const EntranceScatter& scatter_at_face(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
+  void record_return(const State& state, const Light& light, const Vec3& direction);
+  void record_front_reflection(const State& state, const Light& light, const Vec3& direction);
+  /// What happens to a ray from outside at the shells: it does not meet them, it passes all of them, or it ends there.
+  enum class ShellEntry { outside, passed, stopped };
+  ShellEntry enter_shells(State& state);
+  void enter_through_shells(const Vec2& start_mm);
+  bool pass_shells(ShellPassage passage, State& state);
+  std::optional<State> beyond_shells(const State& state, const Light& light, const Vec3& direction);
   void report_exit(Account account, const State& state, const Vec3& direction, const Light& light,
                    bool is_front_reflection = false) const;
   bool meet_side(State& state, const Vec3& normal);

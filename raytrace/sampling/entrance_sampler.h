@@ -3,9 +3,9 @@
 // Maps points of the unit square to entry points that are uniformly distributed over the entrance face.
 
 #include <array>
-#include <vector>
 
 #include "geometry/part/part.h"
+#include "raytrace/sampling/triangle_sampler.h"
 
 namespace retrace::raytrace {
 
@@ -31,8 +31,7 @@ class EntranceSampler {
   bool is_rectangle_ = false;
   Vec2 lower_ = Vec2::Zero();
   Vec2 size_ = Vec2::Zero();
-  std::vector<std::array<Vec2, 3>> triangles_;  ///< triangles that make up the face
-  std::vector<double> cumulative_fraction_;     ///< cumulative fraction of the area of the triangles
+  TriangleSampler triangles_;  ///< triangles that make up the face; not used for rectangles
 };
 
 }  // namespace retrace::raytrace

@@ -29,6 +29,9 @@ struct MonteCarloResult {
   /// Sums of the score over the light that leaves, per unit of incident power, and their standard errors.
   std::vector<double> score;
   std::vector<double> score_error;
+  /// Area of the incident beam divided by the area of the entrance face, both in plan. It differs from 1 only behind
+  /// shells that change the direction of light. Only MonteCarlo::trace() sets it.
+  double beam_area_ratio = 1.0;
   std::uint64_t rays = 0;
   std::uint64_t segments = 0;
   std::uint64_t misses = 0;

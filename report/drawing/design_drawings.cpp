@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "core/number_format.h"
@@ -52,9 +54,39 @@ std::string profile_svg(const design::Design& design, const studies::EntranceRep
   return render_svg(plot);
 }
 
-}  // namespace
+/// Returns the section through the shells and the part. Lengths along both axes have the same scale.
+std::string shells_svg(const design::Design& design, const studies::ShellSection& section) {
+  LinePlot plot;
+  plot.title = design::short_name(design) + ": shells in front of the part";
+  plot.x_label = section.is_along_y ? "y (mm)" : "x (mm)";
+  plot.y_label = "z (mm)";
+  std::vector<double> x;
+  std::vector<double> z;
+  const auto add = [&](const std::string& label, const std::vector<geometry::Vec2>& line) {
+    Series& series = plot.series.emplace_back(Series{.label = label, .x = {}, .y = {}, .y_error = {}});
+    for (const geometry::Vec2& point : line) series.add(point.x(), point.y());
+    x.insert(x.end(), series.x.begin(), series.x.end());
+    z.insert(z.end(), series.y.begin(), series.y.end());
+  };
+  for (std::size_t k = 0; k < section.shells.size(); ++k) add(fmt::format("shell {}", k + 1), section.shells[k]);
+  add("part", section.part);
+  // Equal scales: the axis that is too long for the plot determines the scale.
+  const Range lengths = drawable(extent_of(x).value_or(Range{0.0, 1.0}));
+  const Range heights = drawable(extent_of(z).value_or(Range{0.0, 1.0}));
+  constexpr double kFilledLength = 0.92;
+  const double mm_per_unit =
+      std::max(lengths.span() / kPlotAreaWidth, heights.span() / kPlotAreaHeight) / kFilledLength;
+  const auto around = [](const Range& range, double half) {
+    const double middle = 0.5 * (range.low + range.high);
+    return Range{middle - half, middle + half};
+  };
+  plot.x_range = around(lengths, 0.5 * kPlotAreaWidth * mm_per_unit);
+  plot.y_range = around(heights, 0.5 * kPlotAreaHeight * mm_per_unit);
+  return render_svg(plot);
+}
 
-DesignDrawings design_drawings(const studies::Inspection& inspection) {
+/// Returns the drawings of the part itself.
+DesignDrawings part_drawings(const studies::Inspection& inspection) {
   const design::Design& design = inspection.design;
   if (design.balls()) return {};  // balls have no plane facets, but the drawings show planes
   if (inspection.entrance) {
@@ -76,6 +108,14 @@ DesignDrawings design_drawings(const studies::Inspection& inspection) {
           .section = drawing.section ? section_svg(drawing) : "",
           .view = view_png(studies::view_of(design)),
           .warnings = drawing.warnings};
+}
+
+}  // namespace
+
+DesignDrawings design_drawings(const studies::Inspection& inspection) {
+  DesignDrawings drawings = part_drawings(inspection);
+  if (inspection.shells) drawings.shells = shells_svg(inspection.design, inspection.shells->section);
+  return drawings;
 }
 
 }  // namespace retrace::report

@@ -15,12 +15,13 @@ struct DesignDrawings {
   std::string section = {};   ///< SVG
   std::string view = {};      ///< PNG
   std::string entrance = {};  ///< SVG: profile of a curved entrance face
+  std::string shells = {};    ///< SVG: section through the shells in front of the part
   Warnings warnings = {};
 };
 
-/// Returns the plan, the section and the view of a design, and the profile of a curved entrance face. A design with
-/// balls has no drawings. A design with elements on a substrate (a curved surface) has only the view, because the plan
-/// and the section cannot show true lengths.
+/// Returns the plan, the section and the view of a design, and the profile of a curved entrance face. Shells have a
+/// section of their own. A design with balls has no drawings. A design with elements on a substrate (a curved surface)
+/// has only the view, because the plan and the section cannot show true lengths.
 DesignDrawings design_drawings(const studies::Inspection& inspection);
 
 }  // namespace retrace::report

@@ -105,6 +105,7 @@ DetectorStudy::DetectorStudy(design::Design design, DetectorRequest request, std
     : design_(std::move(design)), request_(std::move(request)), rays_per_pass_(rays_per_pass) {
   requests::check(request_);
   engine_ = raytrace::engine_from_name(request_.engine);
+  design::require_supported(design_, {.what = "retrace image", .solids = true, .entrances = true, .wet_backs = true});
   model_ = design::make_model(design_, materials::MaterialLibrary::shipped());
   facts_ = design::engine_facts(design_, &model_.optics);
   if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts_);

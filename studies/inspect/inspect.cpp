@@ -139,7 +139,7 @@ void tell_early_end(Inspection& result) {
 
 /// Adds a warning if light at normal incidence is not totally reflected at some wavelengths.
 void warn_of_lost_reflection(Inspection& result) {
-  if (!result.design.needs_total_reflection()) return;
+  if (!result.design.needs_total_reflection() || result.design.has_deflecting_shells()) return;
   if (result.coating.facets && result.coating.facets->stack.absorbs()) return;  // the facets reflect by their coating
   if (result.tir_limit_deg) return tell_early_end(result);
   const std::string lost =
@@ -244,7 +244,7 @@ void add_zones(Inspection& result, const design::OpticalModel& model) {
 /// \pre model.wet_elements
 WetReport report_wet_back(const design::Design& design, const design::OpticalModel& model) {
   WetReport wet{model.wet_elements->count(), model.wet_elements->of_all(), {}};
-  if (!design.entrance)
+  if (!design.entrance && !design.has_deflecting_shells())
     wet.tir_limit_deg =
         design::tir_limit_deg(design.part(), min_refractive_index(model.spectral), design.wet_back->index);
   return wet;
@@ -265,6 +265,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   result.facet_area_mm2 = part.retro_facet_area_mm2;
   result.entrance_area_mm2 = part.entrance_area_mm2;
   if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
+  if (!design.shells.empty()) result.shells = report_shells(design, model);
   if (design.zoned()) {
     add_zones(result, model);
     return result;
@@ -281,7 +282,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   result.full_element_area_fraction = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {
     add_base(result, part);
-  } else if (!design.entrance) {
+  } else if (!design.entrance && !design.has_deflecting_shells()) {
     result.tir_limit_deg =
         design::tir_limit_deg(design.part(), min_refractive_index(model.spectral), model.optics.back_index);
     if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = design::tir_limit_azimuth_deg(design.part());

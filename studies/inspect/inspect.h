@@ -18,6 +18,7 @@
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 #include "studies/inspect/entrance_state_report.h"
+#include "studies/inspect/shell_report.h"
 #include "studies/inspect/zone_report.h"
 
 namespace retrace::studies {
@@ -79,6 +80,7 @@ struct Inspection {
   std::optional<SubstrateReport> substrate;
   /// Curved entrance face. Limits of total reflection are nevertheless those of light that enters through a plane.
   std::optional<EntranceReport> entrance;
+  std::optional<ShellsReport> shells;  ///< shells in front of the part; empty if there are none
   std::optional<WetReport> wet_back;
   std::optional<ZonesReport> zones;        ///< zones of the part; empty if it has none
   std::optional<design::FormReport> form;  ///< form of the facets; empty for plane facets

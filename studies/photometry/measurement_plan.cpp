@@ -17,7 +17,8 @@ std::size_t index_of(std::vector<double>& values, double value) {
 }  // namespace
 
 bool mirrors_source(const design::Design& design) {
-  return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
+  return !design.balls() && !design.entrance && !design.has_deflecting_shells() &&
+         !design.idealisation.lossless_entrance;
 }
 
 MeasurementPlan measurement_plan(const PhotometrySettings& request, bool mirrors) {

@@ -72,6 +72,9 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
     case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for element.kind = \"ball\"");
     case Obstacle::curved_entrance:
       throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has an [entrance_surface]");
+    case Obstacle::deflecting_shells:
+      throw InputError(Field{"engine"},
+                       "must be auto, montecarlo or embree if a [[shell]] changes the direction of light");
     case Obstacle::unequal_backs:
       throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
     case Obstacle::texture:
@@ -98,10 +101,10 @@ void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySet
 }
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
-/// meshes. Also returns 0 for curved entrance faces, because they divide the light into cells of their own.
+/// meshes. Also returns 0 for curved entrance faces and lenses, because they divide the light into cells of their own.
 double width_of_cells_mm(const design::Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
-  if (!design.elements() || design.entrance) return 0.0;
+  if (!design.elements() || design.entrance || design.has_deflecting_shells()) return 0.0;
   if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
     return std::min(prism->base_mm, prism->width_mm);
   if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;

@@ -132,7 +132,8 @@ std::map<std::vector<double>, std::vector<std::size_t>> Photometer::settings_by_
   std::map<std::vector<double>, std::vector<std::size_t>> groups;
   const bool may_have_knees = lamp_ && lamp_->parts >= kMinSpansForKnees && effort_ == Effort::full &&
                               design_.elements() && !design_.part().substrate && !design_.entrance &&
-                              !design_.substance.refractive_index && design_.needs_total_reflection();
+                              !design_.has_deflecting_shells() && !design_.substance.refractive_index &&
+                              design_.needs_total_reflection();
   std::vector<IndexAt> table;
   if (may_have_knees) table = index_table(design_, materials::resolved_spectrum(lamp_->power, &lamp_->response));
   for (std::size_t k = 0; k < settings.size(); ++k) {

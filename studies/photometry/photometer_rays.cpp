@@ -26,13 +26,16 @@ Photometer::WavelengthReading Photometer::measure_by_rays(const PhotometerSettin
   sampling.rays = std::max<std::uint64_t>(1, request_.rays.value_or(kDefaultRaysPerDirection) / model_.spectral.size());
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  const raytrace::MonteCarloResult traced =
+  raytrace::MonteCarloResult traced =
       tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress)
                         : raytrace::BallTracer(*design_.balls())
                               .trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress);
   WavelengthReading piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
+  // Intensities are relative to the power on the area of the part, which differs from the incident power behind lenses.
+  for (std::vector<double>* const sums : {&traced.score, &traced.score_error})
+    for (double& value : *sums) value *= traced.beam_area_ratio;
   piece.rre = traced.cones.back().rre;
   piece.std_error = traced.cones.back().std_error;
   piece.truncated = traced.cones.back().ledger[raytrace::Account::truncated];

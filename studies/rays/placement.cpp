@@ -1,6 +1,7 @@
 #include "studies/rays/placement.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "core/error.h"
 #include "raytrace/light/light_setup.h"
@@ -33,14 +34,15 @@ Vec3 centre_of_face(const geometry::Part& part) {
   return {middle.x(), middle.y(), part.thickness_mm};
 }
 
-RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part) {
+RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part, double in_front_mm) {
   RayPlacement placement;
   std::optional<Vec3> aim;
   std::optional<Vec3> way;  ///< vector from the source to the point at which it is aimed
   if (request.is_by_angles()) {
     const double incidence = request.incidence_deg.value_or(0.0);
     const double azimuth = request.azimuth_deg.value_or(0.0);
-    const double distance = request.distance_mm.value_or(kUsualDistanceMm);
+    const double usual_mm = kUsualDistanceMm + in_front_mm / std::cos(Angle::from_deg(incidence).rad());
+    const double distance = request.distance_mm.value_or(usual_mm);
     aim = centre_of_face(part);
     const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
     way = -distance * raytrace::direction_to_source(light);

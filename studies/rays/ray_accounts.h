@@ -10,10 +10,13 @@
 
 namespace retrace::studies {
 
-inline constexpr std::size_t kMissedAccount = raytrace::kAccountCount;
+/// Number of rays that miss the part. It is that of raytrace::Account::shell_reflected, to which no ray belongs,
+/// because this light is not traced further.
+inline constexpr auto kMissedAccount = static_cast<std::size_t>(raytrace::Account::shell_reflected);
 
-inline constexpr std::array<std::string_view, raytrace::kAccountCount + 1> kRayAccounts = [] {
-  std::array<std::string_view, raytrace::kAccountCount + 1> names;
+/// Accounts of rays by their numbers.
+inline constexpr std::array<std::string_view, raytrace::kAccountCount> kRayAccounts = [] {
+  std::array<std::string_view, raytrace::kAccountCount> names;
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) names[k] = raytrace::kAccountNames[k];
   names[kMissedAccount] = "missed";
   return names;

@@ -79,6 +79,15 @@ void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitt
   emitter.period_mm = {part.period_mm->x() * source_from_part.col(0), part.period_mm->y() * source_from_part.col(1)};
 }
 
+/// Returns the height in front of the entrance face up to which the shells of a part, or an emitter that covers them at
+/// oblique incidence, extend. Returns 0 if there are no shells.
+double height_of_shells(const design::OpticalModel& model) {
+  const raytrace::Shells& shells = model.optics.shells;
+  if (shells.empty()) return 0.0;
+  const double radius_mm = model.part.period_mm ? model.part.period_mm->norm() : radius_of_face(model.part);
+  return shells.front().outer.vertex_mm.z() + radius_mm;
+}
+
 /// Checks a request, and returns the settings that both kinds of requests contain.
 /// \param stokes true if rays carry Stokes parameters
 template <class Request>
@@ -101,7 +110,7 @@ struct RayStudy::Impl {
         library(materials::MaterialLibrary::shipped()),
         model(design::make_model(design, library)),
         optics(design, library, ignored),
-        placement(placement_of(request.placement, model.part)) {}
+        placement(placement_of(request.placement, model.part, height_of_shells(model))) {}
 
   design::Design design;
   RayRequest request;

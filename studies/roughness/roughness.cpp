@@ -18,7 +18,7 @@ namespace retrace::studies {
 namespace {
 
 void check(const design::Design& design) {
-  design::require_supported(design, {.what = "retrace roughness", .solids = true});
+  design::require_supported(design, {.what = "retrace roughness", .solids = true, .shells = true});
   if (!design.surface.is_smooth())
     throw InputError(design.where_texture(), "must be left out, because retrace roughness varies the roughness");
   if (design.detector.acceptance_half_angle_deg.size() != 1)

@@ -65,7 +65,7 @@ void finish(Direction& direction, const design::Design& design, const design::Op
 std::vector<double> kinks_of(const design::Design& design, const design::OpticalModel& model,
                              const RreSettings& request) {
   std::vector<double> kinks;
-  if (design.balls() || design.entrance) return kinks;
+  if (design.balls() || design.entrance || design.has_deflecting_shells()) return kinks;
   for (const double cone_deg : design.detector.acceptance_half_angle_deg)
     kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
   if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) return kinks;

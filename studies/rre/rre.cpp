@@ -106,6 +106,11 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
           fmt::format(
               "the engine {} supports only plane entrance faces, but {} has an [entrance_surface]: use {} embree", name,
               source, option));
+    case Obstacle::deflecting_shells:
+      throw InputError(Field{"engine"},
+                       fmt::format("the engine {} supports only plane-parallel shells, but a [[shell]] of {} changes "
+                                   "the direction of light: use {} embree",
+                                   name, source, option));
     case Obstacle::unequal_backs:
       throw InputError(Field{"engine"}, fmt::format("the engine {} requires the same medium behind all elements, but "
                                                     "{} has a [wet_back] behind some elements: use {} embree",
@@ -131,7 +136,7 @@ void check_results(const design::Design& design, const raytrace::EngineFacts& fa
     if (facts.has_balls)
       throw InputError(design.where("element.kind"),
                        "element.kind = \"ball\" is not supported by " + reference(result));
-    if (facts.has_curved_entrance || facts.has_unequal_backs)
+    if (facts.has_curved_entrance || facts.has_deflecting_shells || facts.has_unequal_backs)
       design::require_supported(design, {.what = reference(result), .solids = true});
   }
 }
@@ -162,7 +167,7 @@ RreStudy::RreStudy(std::vector<design::Design> designs, RreSettings request) : p
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
     if (design.balls()) continue;
-    if (request.derivatives) design::require_supported(design, {.what = reference({"derivatives"})});
+    if (request.derivatives) design::require_supported(design, {.what = reference({"derivatives"}), .shells = true});
     const raytrace::EngineFacts facts = engine_facts(design, &prepared_->models.back(), request);
     check_results(design, facts, request);
     check_engine(design, facts, must_be_exact(request) ? raytrace::Engine::exact : request.engine, request);

@@ -34,7 +34,7 @@ retrace_test(command_tests
     app/verify_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 retrace_test(command_tests
-  SOURCES app/entrance_test.cpp app/inputs_test.cpp app/interrupt_test.cpp app/long_run_test.cpp
+  SOURCES app/entrance_test.cpp app/shell_test.cpp app/inputs_test.cpp app/interrupt_test.cpp app/long_run_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 retrace_script_test(app/request_texts
   COMMAND "${RETRACE_PYTHON}" -B "${PROJECT_SOURCE_DIR}/tools/lib/request_texts.py" "$<TARGET_FILE:retrace>" --check)

@@ -53,6 +53,7 @@ TEST(Engines, RefuseWhatTheyCannotTrace) {
   const std::set<Engine> all_but_embree = {exact, stochastic, cell};
   EXPECT_EQ(refused(facts_with({&F::has_balls}), Obstacle::balls), std::set({exact, stochastic, cell, embree}));
   EXPECT_EQ(refused(facts_with({&F::has_curved_entrance}), Obstacle::curved_entrance), all_but_embree);
+  EXPECT_EQ(refused(facts_with({&F::has_deflecting_shells}), Obstacle::deflecting_shells), all_but_embree);
   EXPECT_EQ(refused(facts_with({&F::has_unequal_backs}), Obstacle::unequal_backs), all_but_embree);
   EXPECT_EQ(refused(facts_with({&F::needs_plain_sampling}), Obstacle::plain_sampling), all_but_embree);
   EXPECT_EQ(refused(facts_with({&F::has_unequal_cells}), Obstacle::unequal_cells), std::set({cell}));

@@ -115,9 +115,9 @@ class RayByRay : public ::testing::TestWithParam<std::size_t> {
   Vec3 point_in_plate() {
     while (true) {
       const Vec3 p = random.within(box, 0.02, part.thickness_mm - 0.02);
-      if (part.entrance_pieces.empty() ||
-          std::ranges::any_of(part.entrance_pieces,
-                              [&](const Polygon& piece) { return contains(piece, p.head<2>(), -1e-6); }))
+      if (part.entrance_pieces.empty() || std::ranges::any_of(part.entrance_pieces, [&](const Polygon& piece) {
+            return contains(piece, p.head<2>(), -1e-6);
+          }))
         return p;
     }
   }
@@ -142,8 +142,7 @@ TEST_P(RayByRay, FromAllAroundIsThatOfTheReference) {
 TEST_P(RayByRay, FromInsideIsThatOfTheReference) {
   Optics dark = pmma();
   dark.absorption_per_mm = 1.0;
-  for (int k = 0; k < 20; ++k)
-    compare(point_in_plate(), random.direction(), true, dark, "ray " + std::to_string(k));
+  for (int k = 0; k < 20; ++k) compare(point_in_plate(), random.direction(), true, dark, "ray " + std::to_string(k));
 }
 
 TEST_P(RayByRay, WithAnotherMediumBehindIsThatOfTheReference) {

@@ -31,6 +31,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/scatter_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/scratches_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/stochastic_beams_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/shells_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/unseen_paths_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/weak_beams_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp

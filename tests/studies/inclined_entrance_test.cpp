@@ -46,12 +46,12 @@ design::Design read(const std::string& text) {
 std::string refused(const std::string& text) {
   return refusal_of([&] {
     const design::Design design = read(text);
-    design::make_model(design, materials::MaterialLibrary::shipped(), design::Entrances::any);
+    design::make_model(design, materials::MaterialLibrary::shipped());
   });
 }
 
 design::OpticalModel model_of(const std::string& text) {
-  return design::make_model(read(text), materials::MaterialLibrary::shipped(), design::Entrances::any);
+  return design::make_model(read(text), materials::MaterialLibrary::shipped());
 }
 
 /// Traces light from a direction by rays.

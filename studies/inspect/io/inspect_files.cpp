@@ -17,6 +17,7 @@ namespace {
 
 std::string total_reflection(const Inspection& i) {
   if (i.entrance) return "not computed: a curved entrance surface refracts light into many directions";
+  if (i.design.has_deflecting_shells()) return "not computed: a shell changes the direction of light";
   if (i.substrate) return "not computed: elements on a substrate have different orientations";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: the layers on the facets absorb light";
@@ -59,6 +60,40 @@ nlohmann::ordered_json entrance_json(const EntranceReport& entrance) {
   return {{"lowest_mm", entrance.range.lowest_mm},
           {"highest_mm", entrance.range.highest_mm},
           {"steepest_deg", entrance.steepest_deg}};
+}
+
+nlohmann::ordered_json shells_json(const Inspection& i) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < i.shells->shells.size(); ++k) {
+    const ShellReport& shell = i.shells->shells[k];
+    json.push_back({{"refractive_index", shell.refractive_index},
+                    {"transmittance", shell.transmittance},
+                    {"min_thickness_mm", shell.clearance.min_thickness_mm},
+                    {"max_thickness_mm", shell.clearance.max_thickness_mm},
+                    {"min_gap_mm", shell.clearance.min_gap_mm},
+                    {"deflects_light", !i.design.shells[k].is_plane_parallel()}});
+  }
+  return json;
+}
+
+/// Returns the lines of the report about the shells in front of the part.
+std::string shells_text(const Inspection& i) {
+  std::string text;
+  if (!i.shells) return text;
+  for (std::size_t k = 0; k < i.shells->shells.size(); ++k) {
+    const ShellReport& shell = i.shells->shells[k];
+    const design::OuterShell& given = i.design.shells[k];
+    text +=
+        fmt::format("  {:<20}{}, index {}, {} to {} mm thick along z, at least {} mm in front of the {}\n",
+                    fmt::format("shell {}", k + 1), given.refractive_index ? "given index" : printable(given.material),
+                    fixed(shell.refractive_index, 5), fixed(shell.clearance.min_thickness_mm, 4),
+                    fixed(shell.clearance.max_thickness_mm, 4), fixed(shell.clearance.min_gap_mm, 4),
+                    k + 1 < i.shells->shells.size() ? "next shell" : "part");
+    text += fmt::format("  {:<20}transmits {} % in one crossing at its middle; {}\n", "",
+                        fixed(100.0 * shell.transmittance, 3),
+                        given.is_plane_parallel() ? "plane-parallel" : "changes the direction of light");
+  }
+  return text;
 }
 
 nlohmann::ordered_json form_json(const design::FormReport& form) {
@@ -304,6 +339,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
+  if (i.shells) json["shells"] = shells_json(i);
   if (i.form) json["form"] = form_json(*i.form);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/2", json, i.warnings);
@@ -317,6 +353,7 @@ std::string mesh_text(const Inspection& i) {
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
   text += entrance_text(i);
+  text += shells_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += light_text(i);
@@ -357,6 +394,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);
+  text += shells_text(i);
   text += form_text(i);
   text += light_text(i);
   text += coatings_text(i);

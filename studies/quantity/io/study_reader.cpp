@@ -356,7 +356,8 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
   const design::Design varied =
       design::parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
-  design::require_supported(varied, {.what = "a study", .solids = true, .entrances = true, .wet_backs = true});
+  design::require_supported(varied,
+                            {.what = "a study", .solids = true, .entrances = true, .shells = true, .wet_backs = true});
   return {varied, analysis_of(document, study.seed), machining};
 }
 

@@ -47,6 +47,9 @@ std::uint64_t rays_in(const raytrace::RayLedger& ledger, std::size_t account) {
   return account == kMissedAccount ? ledger.rays_missed : ledger.leaving[account];
 }
 
+constexpr std::string_view kShellReflected =
+    raytrace::kAccountNames[static_cast<std::size_t>(raytrace::Account::shell_reflected)];
+
 const char* unit_of(RayPower power) {
   return power == RayPower::luminous_lm ? "lm" : "W";
 }
@@ -70,6 +73,8 @@ std::string rays_json(const RayResult& result) {
     shares[std::string(kRayAccounts[k])] = ledger.incident > 0.0 ? power_in(ledger, k) / ledger.incident : 0.0;
     if (rays_in(ledger, k) > 0) leaving[std::string(kRayAccounts[k])] = rays_in(ledger, k);
   }
+  if (const double reflected = ledger.ledger[raytrace::Account::shell_reflected]; reflected > 0.0)
+    shares[std::string(kShellReflected)] = reflected / ledger.incident;
   json["ledger"] = shares;
   json["std_error"] = ledger.std_error();
   json["leaving"] = leaving.is_null() ? Json::object() : leaving;
@@ -83,13 +88,13 @@ std::string rays_table(const RayResult& result) {
   const char* const unit = unit_of(result.power);
   std::string table = fmt::format("{} rays of {:.6g} {}\n", ledger.rays, ledger.incident, unit);
   table += fmt::format("{:<20}{:>10}{:>14}{:>12}\n", "account", "share_%", fmt::format("power_{}", unit), "rays_out");
-  for (std::size_t k = 0; k < kRayAccounts.size(); ++k) {
-    const double power = power_in(ledger, k);
+  const auto add = [&](std::string_view account, double power, std::uint64_t rays) {
     const double share = ledger.incident > 0.0 ? power / ledger.incident : 0.0;
-    if (power == 0.0 && rays_in(ledger, k) == 0) continue;
-    table += fmt::format("{:<20}{:>10}{:>14.6g}{:>12}\n", kRayAccounts[k], fixed(100.0 * share, 4), power,
-                         rays_in(ledger, k));
-  }
+    if (power == 0.0 && rays == 0) return;
+    table += fmt::format("{:<20}{:>10}{:>14.6g}{:>12}\n", account, fixed(100.0 * share, 4), power, rays);
+  };
+  for (std::size_t k = 0; k < kRayAccounts.size(); ++k) add(kRayAccounts[k], power_in(ledger, k), rays_in(ledger, k));
+  add(kShellReflected, ledger.ledger[raytrace::Account::shell_reflected], 0);
   return table + fmt::format("{:<20}{:>10}\n", "std_error", fixed(100.0 * ledger.std_error(), 4));
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -44,7 +45,9 @@ Json direction_and_cone_of(const RrePoint& at) {
 
 Json ledger_json(const raytrace::Ledger& ledger) {
   Json json = Json::object();
-  for (std::size_t k = 0; k < kAccountCount; ++k) json[std::string(kAccountNames[k])] = ledger.power[k];
+  for (std::size_t k = 0; k < kAccountCount; ++k)
+    if (raytrace::is_listed(static_cast<raytrace::Account>(k), ledger.power[k]))
+      json[std::string(kAccountNames[k])] = ledger.power[k];
   return json;
 }
 
@@ -209,11 +212,16 @@ std::string rre_json(const RreResult& result) {
 
 std::string rre_csv(const RreResult& result) {
   CsvWriter csv;
+  // The account of shells, the last one, has a column only if it is not empty.
+  const bool has_shells = std::ranges::any_of(
+      result.points, [](const RrePoint& p) { return p.ledger[raytrace::Account::shell_reflected] != 0.0; });
+  const std::size_t accounts =
+      has_shells ? kAccountCount : static_cast<std::size_t>(raytrace::Account::shell_reflected);
   csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", "acceptance_half_angle_deg", "rre", "std_error",
-          kAccountNames, "engine");
+          std::span(kAccountNames).first(accounts), "engine");
   for (const RrePoint& p : result.points)
     csv.row(p.design, p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error,
-            p.ledger.power, p.engine);
+            std::span(p.ledger.power).first(accounts), p.engine);
   return csv.text();
 }
 
