@@ -18,7 +18,7 @@ constexpr double kIsometryTolerance = 1e-7;
 constexpr double kLargestError_rad = 0.1;
 // Minimum absolute determinant of the linear part of ReturnedBeam::entry_from_exit. At smaller values, light leaves
 // almost parallel to the face, and error_free_exit() returns nothing.
-constexpr double kMinDeterminant = 1e-6;
+constexpr double kMinExitDeterminant = 1e-6;
 
 /// Returns the unit direction of a ray in the body after refraction at the entrance face.
 /// \param in_air x and y components of the unit direction in air
@@ -78,7 +78,7 @@ Vec2 onto_face(const Vec3& point, const Vec3& direction) {
 
 std::optional<PathIsometry> path_isometry(const ReturnedBeam& beam, const Vec3& to_source) {
   const Eigen::Affine2d& entry_from_exit = beam.entry_from_exit;
-  if (std::abs(entry_from_exit.linear().determinant()) < kMinDeterminant) return std::nullopt;
+  if (std::abs(entry_from_exit.linear().determinant()) < kMinExitDeterminant) return std::nullopt;
   const Vec3 entering = inside(-to_source.head<2>(), beam.index, -1.0);
   const Vec3 leaving = inside(beam.direction.head<2>(), beam.index, 1.0);
   const Matrix3d m = product_of_reflections(entry_from_exit.linear().inverse(), entering, leaving);
