@@ -23,7 +23,7 @@ EntranceSurface surface_of(const EntranceShape& shape, const Vec3& origin_mm = V
                            const EntranceInclination& inclination = {}, double rotation_deg = 0.0) {
   const SurfacePose pose{origin_mm,
                          rotation_of(inclination) * rotation_about(Vec3::UnitZ(), Angle::from_deg(rotation_deg))};
-  return {FreeformSurface(height_of(shape), std::nullopt, {}, {}), pose};
+  return {FreeformSurface(height_of(shape), std::nullopt, Vec3::Zero(), {}), pose};
 }
 
 EntranceShape formula(const std::string& text) {
@@ -94,9 +94,9 @@ TEST(EntranceShape, RotationIsFromXTowardsY) {
   const double c = std::cos(30.0 * kDegree);
   const double s = std::sin(30.0 * kDegree);
   const std::string across = "(x * cos(pi / 6) + y * sin(pi / 6))";
-  expect_same(surface_of(CylinderEntrance{20.0}, {}, {}, 30.0),
+  expect_same(surface_of(CylinderEntrance{20.0}, Vec3::Zero(), {}, 30.0),
               surface_of(formula("sqrt(400 - " + across + "^2) - 20")), 1e-13);
-  EXPECT_NEAR(surface_of(CylinderEntrance{20.0}, {}, {}, 30.0).at({-4.0 * s, 4.0 * c}).height_mm, 0.0, 1e-14);
+  EXPECT_NEAR(surface_of(CylinderEntrance{20.0}, Vec3::Zero(), {}, 30.0).at({-4.0 * s, 4.0 * c}).height_mm, 0.0, 1e-14);
 }
 
 TEST(EntranceShape, InclinedPlaneRisesTowardsTheAzimuth) {
@@ -163,7 +163,7 @@ TEST(EntranceShape, FoldsAreRefused) {
   const Polygon outline = {{-5, -5}, {5, -5}, {5, 5}, {-5, 5}};
   const auto is_refused = [&](const EntranceShape& shape, double pin_angle_deg) {
     try {
-      check_folds(surface_of(shape, {}, {0.0, 0.0, pin_angle_deg}), outline);
+      check_folds(surface_of(shape, Vec3::Zero(), {0.0, 0.0, pin_angle_deg}), outline);
     } catch (const InputError&) {
       return true;
     }
