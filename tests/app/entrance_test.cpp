@@ -422,8 +422,8 @@ ReadSolid read_binary_stl(const std::string& text) {
     solid.volume_mm3 += (a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)) / 6.0;
     for (std::size_t k = 0; k < 3; ++k) ++traversals[{corners[k], corners[(k + 1) % 3]}];
   }
-  for (const auto& [edge, count] : traversals)
-    if (count != 1 || !traversals.contains({edge.second, edge.first})) ++solid.open_edges;
+  for (const auto& [edge, times] : traversals)
+    if (times != 1 || !traversals.contains({edge.second, edge.first})) ++solid.open_edges;
   return solid;
 }
 

@@ -23,7 +23,7 @@ EntranceSurface surface_of(const EntranceShape& shape, const Vec3& origin_mm = V
                            const EntranceInclination& inclination = {}, double rotation_deg = 0.0) {
   const SurfacePose pose{origin_mm,
                          rotation_of(inclination) * rotation_about(Vec3::UnitZ(), Angle::from_deg(rotation_deg))};
-  return {FreeformSurface(height_of(shape), std::nullopt, Vec3::Zero(), {}), pose};
+  return {FreeformSurface(height_of(shape), std::nullopt, {}, {}), pose};
 }
 
 EntranceShape formula(const std::string& text) {
