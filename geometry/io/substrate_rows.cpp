@@ -31,7 +31,7 @@ constexpr Condition kOfPins[] = {is("array.arrangement", kPins)};
 constexpr Condition kOfNoPins[] = {is_not("array.arrangement", kPins)};
 constexpr Condition kOfNoPinsOnSurface[] = {
     is_not("array.arrangement", kPins),
-    is_not("kind", only(kKindsOfDesign, "offset"),
+    is_not("substrate.kind", only(kKindsOfDesign, "offset"),
            "not allowed for substrate.kind = \"offset\", whose elements are parallel to z")};
 
 Value get_kind(const Substrate& substrate) {
