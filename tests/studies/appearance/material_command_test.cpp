@@ -377,7 +377,7 @@ TEST(Material, WhatCannotBeIsRefusedAndNothingWritten) {
   refused({"m.stl", "--error", "0.1"}, "--error");
   refused({"m.json", "--json", "m.csv"}, "--json");
   EXPECT_EQ(refused_at(retrace(folder, {"export", example("fronts/cats_eye_lenslets.toml"), "m.json"})),
-            "examples/fronts/cats_eye_lenslets.toml: form");
+            "examples/fronts/cats_eye_lenslets.toml:10: entrance_surface.turned_part");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"d.toml"});
 }
 
