@@ -104,7 +104,7 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   }
   const bool is_entrance = role == FacetRole::entrance;
   if (!is_entrance && step.scene.policy.ends_at_sides) {
-    step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
+    step.record.add_to_ledger(beam, Account::side_exit, power_of(beam));
     return;
   }
   const Vec3 against = -plane.normal;

@@ -140,7 +140,9 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
       });
   if (!beams.complete) return reading;
   const raytrace::FarField field = collector.finish();
-  common.truncated = beams.ledgers.back()[raytrace::Account::truncated];
+  const double truncated = beams.ledgers.back()[raytrace::Account::truncated];
+  const double beside = beams.ledgers.back()[raytrace::Account::side_exit];
+  common.truncated = truncated + beside;
   if (keeps_phases()) {
     common.rre += field.scattered_within(scene->frame(traced_frame(settings[directions.front().index], {})),
                                          Angle::from_deg(cones.back()).rad()) -
@@ -157,7 +159,8 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
     for (const double observation_deg : setting.observation_deg) {
       const Vec3 receiver = towards_receiver(frame, observation_deg);
       const double seen = field.intensity(receiver, kernel_).per_sr;
-      const double missing = (common.rre > 0.0 ? common.truncated / common.rre * seen : 0.0) +
+      // Light that leaves the surroundings is assumed to return from other elements with the same efficiency.
+      const double missing = (common.rre > 0.0 ? truncated / common.rre * seen : 0.0) + beside * seen +
                              unplaced * field.scattered_per_sr(receiver, kernel_);
       piece.per_sr.push_back(factor * seen);
       piece.missing_per_sr.push_back(factor * missing);
