@@ -315,8 +315,8 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
 
 // ctest runs every tutorial as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
-                         testing::Values("first_curve", "measured_facet", "nc_program", "test_cuts", "regulation",
-                                         "cluster"),
+                         testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts",
+                                         "regulation", "cluster"),
                          name_of);
 
 TEST(TutorialPages, AreAllFollowed) {
@@ -324,8 +324,8 @@ TEST(TutorialPages, AreAllFollowed) {
   for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs/tutorials"))
     names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "measured_facet", "nc_program", "regulation",
-                                             "test_cuts"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "lamp", "measured_facet", "nc_program",
+                                             "regulation", "test_cuts"}));
 }
 
 TEST(TutorialPages, AreReadStepByStep) {
