@@ -138,7 +138,7 @@ class PathWalker {
   void leave(const State& state, const Light& light, const Vec3& direction);
   void record_return(const State& state, const Light& light, const Vec3& direction);
   void record_front_reflection(const State& state, const Light& light, const Vec3& direction);
-  /// What happens to a ray from outside at the shells: it does not meet them, it passes all of them, or it ends there.
+  /// Result for a ray from outside at the shells: it does not meet them, it passes all of them, or it ends there.
   enum class ShellEntry { outside, passed, stopped };
   ShellEntry enter_shells(State& state);
   void enter_through_shells(const Vec2& start_mm);
