@@ -92,6 +92,10 @@ std::optional<double> concentration(const geometry::EntranceSurface& surface, co
   return ratio;
 }
 
+double rise_above(const geometry::TouchingPlane& plane, const Vec3& to_source) {
+  return to_source.z() - plane.slope.dot(to_source.head<2>());
+}
+
 std::optional<SurfacePoint> nearest_intersection(const geometry::EntranceSurface& surface, const Vec3& start_mm,
                                                  const Vec3& direction) {
   SurfacePoint found;

@@ -47,6 +47,10 @@ std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, con
 std::optional<double> concentration(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                     const Vec3& to_source, double index, double height_mm, double step_mm);
 
+/// Returns the height that a ray towards the source gains over a plane, per length of the ray. Multiplied by an area in
+/// plan, it is the cross section of the light that crosses the plane in this area.
+double rise_above(const geometry::TouchingPlane& plane, const Vec3& to_source);
+
 /// Intersection of a line with the surface.
 struct SurfacePoint {
   double distance_mm = 0.0;  ///< distance from the start of the line

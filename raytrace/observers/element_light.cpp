@@ -90,7 +90,8 @@ struct ElementLight::Bounds {
 
 ElementLight::ElementLight(const geometry::Part& part, std::shared_ptr<const geometry::EntranceSurface> surface)
     : part_(part), surface_(std::move(surface)), elements_(geometry::part_elements(part)) {
-  top_mm_ = geometry::entrance_range(surface_, part.outline).highest_mm;
+  const geometry::EntranceRange range = geometry::entrance_range(surface_, part.outline);
+  beam_plane_ = range.inclined_plane.value_or(geometry::TouchingPlane{range.highest_mm, Vec2::Zero()});
   area_mm2_ = geometry::area(part.outline);
   diameter_mm_ = geometry::bounding_box(part.outline).size().norm();
   std::vector<std::uint32_t> others(elements_.size());
@@ -122,7 +123,8 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
   Bounds bounds;
   bounds.merge_mm = kMerge * part_.size_mm;
   bounds.diameter_mm = diameter_mm_;
-  const Vec2 per_height = to_source.head<2>() / to_source.z();
+  // Displacement of a ray in plan per height of its start below the plane of the incident beam.
+  const Vec2 per_height = to_source.head<2>() / rise_above(beam_plane_, to_source);
   for (std::size_t k = 0; k < part_.outline.size(); ++k) {
     const Vec2& a = part_.outline[k];
     const Vec2 along = part_.outline[(k + 1) % part_.outline.size()] - a;
@@ -130,7 +132,9 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
     bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), 0.0}, outward.dot(a)));
     // The incident beam covers the outline in the plane that touches the surface from above.
     const double lean = outward.dot(per_height);
-    bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), -lean}, outward.dot(a) - lean * top_mm_));
+    const Vec2 in_plane = outward + lean * beam_plane_.slope;
+    bounds.of_part.push_back(
+        half_plane_on(plane, {in_plane.x(), in_plane.y(), -lean}, outward.dot(a) - lean * beam_plane_.height_mm));
   }
   const Vec2 own = plane.point_mm.head<2>();
   for (const std::optional<Vec2>& other : tangent_points) {
@@ -145,7 +149,7 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
 
 /// Returns the fraction of the light incident on the part that falls on 1 mm^2 of a tangent plane.
 double ElementLight::fraction_per_mm2(const TangentPlane& plane, const Vec3& to_source) const {
-  return plane.normal.dot(to_source) / (area_mm2_ * to_source.z());
+  return plane.normal.dot(to_source) / (area_mm2_ * rise_above(beam_plane_, to_source));
 }
 
 std::vector<ElementPortion> ElementLight::portions(const Vec3& to_source, double index) const {
@@ -304,8 +308,11 @@ BeamResult trace_element(const ElementScene& scene, const Optics& optics, const 
                          const BeamObserver& observer) {
   const ElementExcerpt& excerpt = scene.excerpt;
   policy.ends_at_sides = true;
+  Optics own_optics = optics;
+  for (Shell& shell : own_optics.shells)
+    for (ShellSurface* const surface : {&shell.outer, &shell.inner}) surface->normal = scene.direction(surface->normal);
   const BeamTracer tracer(excerpt.part);
-  return tracer.trace(optics, illumination, cones_deg, policy, cancel, [&](const ReturnedBeam& beam) {
+  return tracer.trace(own_optics, illumination, cones_deg, policy, cancel, [&](const ReturnedBeam& beam) {
     if (beam.depth == 0) return;
     const std::uint64_t first = beam.trail.first ? beam.trail.first->id : 0;
     const bool meets_element = beam.trail.first && excerpt.is_element[first];

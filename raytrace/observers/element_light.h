@@ -67,9 +67,9 @@ class ElementLight {
 
   std::size_t element_count() const { return elements_.size(); }
   const geometry::EntranceSurface& surface() const { return *surface_; }
-  /// Returns the height of the plane that touches the entrance surface from above. The incident beam covers the outline
-  /// of the part in this plane.
-  double top_mm() const { return top_mm_; }
+  /// Returns the plane that touches the entrance surface from above. The incident beam covers the outline of the part
+  /// in this plane.
+  const geometry::TouchingPlane& beam_plane() const { return beam_plane_; }
 
   /// Returns the portions of all elements, for light of one wavelength from one direction. Portions without a tangent
   /// plane have the fraction 0.
@@ -92,7 +92,7 @@ class ElementLight {
   std::shared_ptr<const geometry::EntranceSurface> surface_;
   std::vector<geometry::PartElement> elements_;
   std::vector<std::vector<std::uint32_t>> neighbours_;  ///< for each element, the nearest elements
-  double top_mm_ = 0.0;
+  geometry::TouchingPlane beam_plane_;
   double area_mm2_ = 0.0;
   double diameter_mm_ = 0.0;
 };
@@ -104,6 +104,7 @@ Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, c
 /// element before any other element, and the light of the element's portion that met no element first. The light that
 /// the surface reflects at its outer side is not included. The beams contain the curvature of the surface as hits with
 /// a form. Powers are relative to the light on the excerpt, see ElementScene::power_factor.
+/// \param optics shells must not deflect light
 /// \param policy BeamPolicy::ends_at_sides is set
 BeamResult trace_element(const ElementScene& scene, const Optics& optics, const Illumination& illumination,
                          const std::vector<double>& cones_deg, BeamPolicy policy, const Cancellation* cancel,

@@ -30,7 +30,7 @@ constexpr double kOneMap = 0.3;
 // Tolerances for equal facet planes: components of the normals, and offsets as a fraction of the correlation length.
 constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
 // Minimum determinant of the map from the entrance face to a facet. At smaller values, light is at grazing incidence.
-constexpr double kMinDeterminant = 1e-9;
+constexpr double kMinFacetDeterminant = 1e-9;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kMergedCorners = 1e-9;
 // Ratio of the singular values of Moves::matrix below which the map is treated as a reflection at a line. For an
@@ -164,13 +164,13 @@ struct ScatteredField::Shared {
         if ((a.normal - b.normal).norm() > kOnePlane || std::abs(a.offset_mm - b.offset_mm) > kOneOffset * shortest_mm)
           continue;
         const Eigen::Matrix2d square = b.slope.transpose() * b.slope;
-        if (square.determinant() < kMinDeterminant) continue;
+        if (square.determinant() < kMinFacetDeterminant) continue;
         Shared one{&here, &there, Eigen::Matrix2d::Identity(), Vec2::Zero(), {{&a, &b}}, log_means};
         if (&a != &b) {
           const Eigen::Matrix<double, 2, 3> inverse = square.inverse() * b.slope.transpose();
           one.partner_map = inverse * a.slope;
           one.shift_mm = inverse * (a.constant_mm - b.constant_mm);
-          if (std::abs(one.partner_map.determinant()) < kMinDeterminant) continue;
+          if (std::abs(one.partner_map.determinant()) < kMinFacetDeterminant) continue;
         }
         const auto same = std::find_if(found.begin(), found.end(), [&](const Shared& s) {
           return s.farthest_from(one.partner_map, one.shift_mm) < kOneMap * shortest_mm;

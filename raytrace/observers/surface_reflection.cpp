@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "raytrace/faces/tangent_plane.h"
 #include "raytrace/light/light_setup.h"
 
 namespace retrace::raytrace {
@@ -87,36 +88,39 @@ class ReflectedSum {
 
 /// Returns the part of the outline in which the incident beam meets the surface. Edges of the beam's shadow are
 /// straight lines between the shadows of the corners.
-Polygon lit_outline(const EntranceSurface& surface, const Polygon& outline, double top_mm, const Vec3& to_source) {
+Polygon lit_outline(const EntranceSurface& surface, const Polygon& outline, const geometry::TouchingPlane& beam_plane,
+                    const Vec3& to_source) {
   Polygon shifted;
   for (const Vec2& corner : outline) {
-    const double depth_mm = top_mm - surface.at(corner).height_mm;
-    shifted.push_back(corner - (std::isfinite(depth_mm) ? depth_mm : 0.0) * Vec2(to_source.head<2>() / to_source.z()));
+    const double depth_mm = beam_plane.at(corner) - surface.at(corner).height_mm;
+    const double path_mm = std::isfinite(depth_mm) ? depth_mm / rise_above(beam_plane, to_source) : 0.0;
+    shifted.push_back(corner - path_mm * to_source.head<2>());
   }
   return geometry::clip(outline, shifted, kMergedCorner * geometry::bounding_box(outline).size().norm());
 }
 
 }  // namespace
 
-double reflected_per_sr(const EntranceSurface& surface, const Polygon& outline, double top_mm, const Vec3& to_source,
-                        const Vec3& receiver, const ApertureKernel& kernel,
-                        const std::function<double(const Vec3& normal)>& reflectance) {
-  Polygon lit = lit_outline(surface, outline, top_mm, to_source);
+double reflected_per_sr(const EntranceSurface& surface, const Polygon& outline,
+                        const geometry::TouchingPlane& beam_plane, const Vec3& to_source, const Vec3& receiver,
+                        const ApertureKernel& kernel, const std::function<double(const Vec3& normal)>& reflectance) {
+  Polygon lit = lit_outline(surface, outline, beam_plane, to_source);
   if (lit.size() < 3) return 0.0;
   const Rectangle box = geometry::bounding_box(lit);
   ReflectedSum reflection(surface, std::move(lit), to_source, receiver, kernel, reflectance);
   reflection.add(box, 0);
-  return reflection.sum() / (geometry::area(outline) * to_source.z());
+  return reflection.sum() / (geometry::area(outline) * rise_above(beam_plane, to_source));
 }
 
-void visit_reflected(const EntranceSurface& surface, const Polygon& outline, double top_mm, const Vec3& to_source,
-                     std::size_t columns, const std::function<double(const Vec3& normal)>& reflectance,
+void visit_reflected(const EntranceSurface& surface, const Polygon& outline, const geometry::TouchingPlane& beam_plane,
+                     const Vec3& to_source, std::size_t columns,
+                     const std::function<double(const Vec3& normal)>& reflectance,
                      const std::function<void(const Vec3& direction, double power)>& visit) {
-  const Polygon lit = lit_outline(surface, outline, top_mm, to_source);
+  const Polygon lit = lit_outline(surface, outline, beam_plane, to_source);
   if (lit.size() < 3) return;
   const Rectangle box = geometry::bounding_box(lit);
   const Vec2 step = box.size() / static_cast<double>(columns);
-  const double per_mm2 = 1.0 / (geometry::area(outline) * to_source.z());
+  const double per_mm2 = 1.0 / (geometry::area(outline) * rise_above(beam_plane, to_source));
   for (std::size_t j = 0; j < columns; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
       const Vec2 at = box.lower + Vec2(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5).cwiseProduct(step);

@@ -15,18 +15,18 @@ namespace retrace::raytrace {
 /// of source and receiver, as a fraction of the incident light. The light is described by geometrical optics. Light
 /// that meets the surface again is treated as if it did not.
 /// \param outline convex outline of the part
-/// \param top_mm height of the plane that touches the surface from above. The incident beam covers the outline in this
-///        plane.
+/// \param beam_plane plane that touches the surface from above. The incident beam covers the outline in this plane.
 /// \param reflectance power that the surface reflects, for a unit normal of the surface in the part frame
-double reflected_per_sr(const geometry::EntranceSurface& surface, const geometry::Polygon& outline, double top_mm,
-                        const geometry::Vec3& to_source, const geometry::Vec3& receiver, const ApertureKernel& kernel,
+double reflected_per_sr(const geometry::EntranceSurface& surface, const geometry::Polygon& outline,
+                        const geometry::TouchingPlane& beam_plane, const geometry::Vec3& to_source,
+                        const geometry::Vec3& receiver, const ApertureKernel& kernel,
                         const std::function<double(const geometry::Vec3& normal)>& reflectance);
 
 /// Calls visit(direction, power) for points of the surface on a grid. The sum of all powers is the power that the
 /// surface reflects, as a fraction of the incident light. Parameters are those of reflected_per_sr().
 /// \param columns number of points along each side of the outline's bounding box
-void visit_reflected(const geometry::EntranceSurface& surface, const geometry::Polygon& outline, double top_mm,
-                     const geometry::Vec3& to_source, std::size_t columns,
+void visit_reflected(const geometry::EntranceSurface& surface, const geometry::Polygon& outline,
+                     const geometry::TouchingPlane& beam_plane, const geometry::Vec3& to_source, std::size_t columns,
                      const std::function<double(const geometry::Vec3& normal)>& reflectance,
                      const std::function<void(const geometry::Vec3& direction, double power)>& visit);
 

@@ -182,25 +182,28 @@ void Photometer::add_surface_reflection(const PhotometerSetting& setting, const 
                                         const raytrace::ElementLight& elements, WavelengthReading& sum) const {
   if (!has_front_reflection_ || !has_mirror_image_ || design_.idealisation.lossless_entrance) return;
   const ReturnFrame frame = traced_frame(setting, shared);
-  const raytrace::Light incident = raytrace::light_of_beam(design_.light.polarisation, frame.to_source);
   const auto reflectance = [&](const Vec3& normal) {
-    raytrace::Light light = incident;
-    light.rotate_basis_to_interface(-frame.to_source, normal);
+    const Vec3 reflected = raytrace::mirrored(-frame.to_source, normal);
     double power = 0.0;
-    for (std::size_t w = 0; w < model_.spectral.size(); ++w)
-      power +=
-          weights_[w] *
-          light.reflected(fresnel_at_entrance(model_.spectral[w].optics, false, normal.dot(frame.to_source))).power();
+    for (std::size_t w = 0; w < model_.spectral.size(); ++w) {
+      const raytrace::Optics& optics = model_.spectral[w].optics;
+      raytrace::Light light = raytrace::light_of_beam(design_.light.polarisation, frame.to_source);
+      pass_plates(optics.shells, raytrace::ShellPassage::to_part, -frame.to_source, light);
+      light.rotate_basis_to_interface(-frame.to_source, normal);
+      light = light.reflected(fresnel_at_entrance(optics, false, normal.dot(frame.to_source)));
+      pass_plates(optics.shells, raytrace::ShellPassage::from_part, reflected, light);
+      power += weights_[w] * light.power();
+    }
     return power;
   };
   const geometry::Polygon& outline = model_.part.outline;
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k)
-    sum.per_sr[k] += reflected_per_sr(elements.surface(), outline, elements.top_mm(), frame.to_source,
+    sum.per_sr[k] += reflected_per_sr(elements.surface(), outline, elements.beam_plane(), frame.to_source,
                                       towards_receiver(frame, setting.observation_deg[k]), kernel_, reflectance);
   std::optional<raytrace::DirectionGrid> grid;
   if (setting.map_columns > 0) grid = grid_of_map(setting, request_.window_deg);
   raytrace::visit_reflected(
-      elements.surface(), outline, elements.top_mm(), frame.to_source, kReflectionColumns, reflectance,
+      elements.surface(), outline, elements.beam_plane(), frame.to_source, kReflectionColumns, reflectance,
       [&](const Vec3& direction, double power) {
         if (is_within(direction, frame.to_source, design_.detector.acceptance_half_angle_deg.back())) sum.rre += power;
         if (!grid) return;

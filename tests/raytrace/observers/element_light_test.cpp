@@ -276,14 +276,14 @@ TEST(SurfaceReflection, SphereHasTheIntensityOfItsClosedForm) {
   for (const double incidence_deg : {0.0, 2.0}) {
     const Vec3 to_source = at_angles(incidence_deg, 30.0);
     const Vec3 receiver = at_angles(incidence_deg + 1.0 / 3.0, 30.0);
-    const double per_sr =
-        reflected_per_sr(surface, outline, 3.0, to_source, receiver, ten_minutes(), [](const Vec3&) { return 0.04; });
+    const double per_sr = reflected_per_sr(surface, outline, {3.0, Vec2::Zero()}, to_source, receiver, ten_minutes(),
+                                           [](const Vec3&) { return 0.04; });
     const double intensity = per_sr * area(outline) * to_source.z();
     EXPECT_NEAR(intensity, 0.04 * radius_mm * radius_mm / 4.0, 3e-3 * 0.04 * radius_mm * radius_mm / 4.0);
   }
   double power = 0.0;
   visit_reflected(
-      surface, outline, 3.0, Vec3::UnitZ(), 200, [](const Vec3&) { return 0.04; },
+      surface, outline, {3.0, Vec2::Zero()}, Vec3::UnitZ(), 200, [](const Vec3&) { return 0.04; },
       [&](const Vec3&, double own) { power += own; });
   EXPECT_NEAR(power, 0.04, 1e-6);
 }
