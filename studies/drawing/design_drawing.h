@@ -83,9 +83,10 @@ inline constexpr std::size_t kMaxPlanFaces = 16'000;
 /// \param part part of the design
 DesignDrawing draw_design(const design::Design& design, const geometry::Part& part);
 
-/// Returns the drawing of a design with a curved entrance face. The section shows the whole width of the part through
-/// its centre, unless its elements are too small. \param part part of the design \param entrance_height heights of the
-/// entrance face
+/// Returns the drawing of a design with a curved entrance face. The section shows the whole width of the part near its
+/// centre, unless the elements are too small.
+/// \param part part of the design
+/// \param entrance_height heights of the entrance face
 DesignDrawing draw_curved_design(const design::Design& design, const geometry::Part& part,
                                  const geometry::EntranceHeights& entrance_height);
 
