@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -199,20 +198,6 @@ EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& o
     }
   }
   return range;
-}
-
-double entrance_height(const Entrance& entrance, const Vec2& point_mm) {
-  if (const auto* const surface = std::get_if<std::shared_ptr<const EntranceSurface>>(&entrance))
-    return (*surface)->at(point_mm).height_mm;
-  const SurfacePatch& patch = *std::get<1>(entrance);
-  for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
-    const auto& [a, b, c] = patch.triangles[k];
-    const auto place = [&](std::uint32_t v) { return Vec2(patch.vertices[v].head<2>()); };
-    if (!contains(Polygon{place(a), place(b), place(c)}, point_mm)) continue;
-    const PatchFacet& facet = patch.facets[k];
-    return (facet.offset_mm - facet.normal.head<2>().dot(point_mm)) / facet.normal.z();
-  }
-  return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<std::vector<Vec3>> entrance_mesh_polygons(const SurfacePatch& patch, const Polygon& outline) {

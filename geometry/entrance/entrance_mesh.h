@@ -47,10 +47,6 @@ SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec
 /// exact surfaces.
 EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& outline);
 
-/// Returns the height of an entrance face at a point of the part frame, or NaN where there is no face. For a mesh, all
-/// triangles are searched.
-double entrance_height(const Entrance& entrance, const Vec2& point_mm);
-
 /// Returns the portions of the triangles of an entrance mesh over the outline of a part. They are convex in plan and
 /// counter-clockwise seen from above. Corners that are nearer to a side of the outline than the rounding errors of
 /// single precision are moved onto this side.

@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "geometry/entrance/entrance_mesh.h"
 #include "raytrace/observers/photometric_geometry.h"
 
 namespace retrace::studies {
@@ -36,7 +35,7 @@ std::string text_of(const Vec3& p) {
 
 /// Returns the height of the entrance face at a point of the part frame that is within the outline of the part.
 double face_height(const design::OpticalModel& model, const Vec2& at_mm) {
-  return model.entrance ? geometry::entrance_height(*model.entrance, at_mm) : model.part.thickness_mm;
+  return model.entrance ? geometry::height_mm(*model.entrance, at_mm) : model.part.thickness_mm;
 }
 
 bool is_inside(const design::OpticalModel& model, const Vec3& p) {

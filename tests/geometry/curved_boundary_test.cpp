@@ -85,8 +85,7 @@ TEST(CurvedBoundary, SolidsAreClosedWithTheVolumeBelowTheSurface) {
       EXPECT_LE(boundary.entrance_error_mm, s.error_mm) << name;
       EXPECT_GT(boundary.entrance_error_mm, 0.0) << name;
       const BoundaryReport report = expect_solid(boundary, name);
-      const double above_mm3 =
-          integral(p.part.outline, [&](const Vec2& at) { return entrance_height(s.entrance, at); });
+      const double above_mm3 = integral(p.part.outline, [&](const Vec2& at) { return height_mm(s.entrance, at); });
       EXPECT_NEAR(report.volume_mm3, above_mm3 + volume_below(p.part),
                   s.error_mm * p.part.entrance_area_mm2 + 1e-5 * above_mm3)
           << name;
@@ -121,11 +120,11 @@ TEST(CurvedBoundary, CornersAreOnTheSurfaceAndTrianglesWithinTheError) {
       ++triangles;
       const auto& [a, b, c] = boundary.mesh.triangles[t];
       const auto& v = boundary.mesh.vertices;
-      for (const std::uint32_t k : {a, b, c}) EXPECT_NEAR(v[k].z(), entrance_height(sphere, v[k].head<2>()), 1e-12);
+      for (const std::uint32_t k : {a, b, c}) EXPECT_NEAR(v[k].z(), height_mm(sphere, v[k].head<2>()), 1e-12);
       const double u = std::sqrt(unit(random));
       const double w = unit(random);
       const Vec3 p = (1.0 - u) * v[a] + u * (1.0 - w) * v[b] + u * w * v[c];
-      EXPECT_NEAR(p.z(), entrance_height(sphere, p.head<2>()), error_mm);
+      EXPECT_NEAR(p.z(), height_mm(sphere, p.head<2>()), error_mm);
     }
     EXPECT_GT(triangles, before);
     EXPECT_LT(triangles, 1500.0 * std::max(1.0, 1e-3 / error_mm)) << "triangles are not smaller than necessary";
@@ -146,7 +145,7 @@ TEST(CurvedBoundary, MeshesKeepTheirTriangles) {
     const CurvedBoundary boundary = curved_boundary(part, mesh, 1e-3);
     EXPECT_EQ(boundary.entrance_error_mm, 0.0);
     const BoundaryReport report = expect_solid(boundary, p.name);
-    const double above_mm3 = integral(part.outline, [&](const Vec2& at) { return entrance_height(mesh, at); });
+    const double above_mm3 = integral(part.outline, [&](const Vec2& at) { return height_mm(mesh, at); });
     EXPECT_NEAR(report.volume_mm3, above_mm3 + volume_below(part), 1e-5 * above_mm3) << p.name;
   }
 }

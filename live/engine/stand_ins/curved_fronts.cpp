@@ -1,12 +1,12 @@
 // Replaces entrance surfaces of turned parts and meshes by functions that report an error. Such surfaces are read from
 // files, which the live page does not have. Meshes also need Embree.
-#include "design/entrance_of_design.h"
+#include "design/entrance_file.h"
 #include "live/engine/stand_ins/absent.h"
 #include "raytrace/faces/height_field.h"
 
 namespace retrace::design {
 
-geometry::Entrance entrance_of_design(const Design&, const geometry::Part&) {
+geometry::Entrance entrance_of_file(const Design&, const geometry::Part&, const geometry::Vec3&) {
   live::fail_as_absent("no access to other files than the design");
 }
 
