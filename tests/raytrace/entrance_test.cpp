@@ -495,7 +495,8 @@ TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
 }
 
 // Paths for drawings are refracted at the exact surface, like traced paths. All light of mirrors behind a lossless
-// surface takes one path.
+// surface takes one path. Traced light that meets a lossless surface from inside beyond the critical angle does not
+// leave.
 TEST(Entrance, DrawnPathsAreTracedPaths) {
   const Part part = build_part(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 4.0, 1.0));
   const Vec2 centre = bounding_box(part.outline).centre();
@@ -503,11 +504,14 @@ TEST(Entrance, DrawnPathsAreTracedPaths) {
   const OneRay one(part, sphere, centre);
   const ExactSurface surface(part, centre);
   const HitFinder first_hit = [&](const SurfaceRay& ray) { return surface.first_hit(ray); };
+  std::size_t compared = 0;
   for (const double incidence_deg : {0.0, 12.0})
-    for (const Vec2& aside : {Vec2(0.11, 0.07), Vec2(-0.6, 0.35), Vec2(0.83, -0.58)}) {
+    for (const Vec2& aside : {Vec2(0.11, 0.07), Vec2(-0.6, 0.35), Vec2(0.83, -0.58), Vec2(-0.05, -0.12)}) {
       const Illumination light = from(incidence_deg, 40.0);
       const LightPath path = strongest_path(part, first_hit, centre, ideal(), light, 0.5, centre + aside, &one.face());
       const Exits exits = one.follow(ideal(), light, aside);
+      if (exits.all.empty()) continue;
+      ++compared;
       ASSERT_EQ(exits.all.size(), 1U);
       ASSERT_EQ(path.steps.back().event, PathEvent::leaves);
       const std::size_t last = path.points_mm.size() - 1;
@@ -515,6 +519,7 @@ TEST(Entrance, DrawnPathsAreTracedPaths) {
       EXPECT_LT((direction - exits.all[0].direction).norm(), 1e-9);
       EXPECT_LT((path.points_mm[last - 1] - exits.all[0].position - Vec3(centre.x(), centre.y(), 0.0)).norm(), 1e-9);
     }
+  EXPECT_GE(compared, 4U);
 }
 
 TEST(Entrance, DrawnPathsBehindAPlaneSurfaceAreThoseOfThePlaneFace) {
