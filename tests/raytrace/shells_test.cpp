@@ -209,8 +209,11 @@ TEST(Shells, EnginesAgree) {
   expect_same(by_rays(cubes(), optics, light, 1U << 17).cones[0].ledger, beams, 1e-3);
   expect_same(by_rays(cubes(), optics, light, 1U << 17, 0.5, MonteCarlo::Engine::cell).cones[0].ledger, beams, 1e-3);
   optics.shells[0].outer.normal = optics.shells[0].inner.normal = normal_at(-12.0, 25.0);
-  expect_same(by_rays(plate_of_cubes(), optics, light, 1U << 17).cones[0].ledger,
-              by_beams(plate_of_cubes(), optics, light, 1e-5), 3e-3);
+  // The exact engine truncates weak beams, which belong to any of the other accounts.
+  const Ledger exact = by_beams(plate_of_cubes(), optics, light, 1e-5);
+  expect_same(by_rays(plate_of_cubes(), optics, light, 1U << 17).cones[0].ledger, exact,
+              1e-3 + exact[Account::truncated]);
+  EXPECT_LT(exact[Account::truncated], 0.03);
 }
 
 // A wedge deflects light as Snell's law requires at each surface, in both directions.
@@ -341,7 +344,8 @@ TEST(Shells, LensLightsTheWholePart) {
   Optics optics = mirrored_pmma();
   optics.shells = {lens(0.1, 2.0, kIndex, 32.0, 30.0)};
   const MonteCarloResult result = by_rays(part, optics, from(0.0), 1U << 13, 0.5, MonteCarlo::Engine::embree, &dome);
-  EXPECT_LT(result.cones[0].ledger[Account::transmitted], 2e-4);
+  // The lens makes the light oblique, so that a small part of it passes beside the lower rim of the dome.
+  EXPECT_LT(result.cones[0].ledger[Account::transmitted], 1e-3);
   EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
 }
 
@@ -368,7 +372,7 @@ TEST(Shells, LedgersAddUpToOne) {
     const Ledger& ledger = result.cones[0].ledger;
     EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
     EXPECT_EQ(ledger[Account::lost], 0.0);
-    EXPECT_GT(ledger[Account::shell_reflected], 0.05);
+    EXPECT_GT(ledger[Account::shell_reflected], 0.02);
     for (const double power : ledger.power) EXPECT_GE(power, 0.0);
   }
 }
