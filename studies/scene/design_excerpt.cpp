@@ -45,6 +45,8 @@ FewElements few_elements(const design::Design& design, double elements) {
   if (!design.surface.form.is_plane()) remarks.push_back("facets are shown plane");
   if (design.wet_back) remarks.push_back("wet elements are shown dry");
   small.surface.entrance = {};
+  small.shells.clear();
+  if (!design.shells.empty()) remarks.push_back("the shells in front of the part are not shown");
   if (!design.surface.entrance.is_clean()) remarks.push_back("the entrance face is shown clean");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return few;
