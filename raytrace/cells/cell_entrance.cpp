@@ -88,7 +88,7 @@ void CellEntrance::meet(const CellStep& step) {
     step.streams.hand_over(step.rays(), step.size(), step.batch.hits.labels(), label_of(Hit::limit), true,
                            step.stream().scattered);
   if (contaminated_) return meet_contaminated(step);
-  if (!setup_.optics.has_bare_entrance() || !setup_.optics.shells.empty()) return meet_layers(step);
+  if (!setup_.optics.has_bare_entrance() || affect_light(setup_.optics.shells)) return meet_layers(step);
   meet_bare(step);
 }
 

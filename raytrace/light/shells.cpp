@@ -122,6 +122,11 @@ bool deflect(const Shells& shells) {
   return std::any_of(shells.begin(), shells.end(), [](const Shell& shell) { return !shell.is_plane_parallel(); });
 }
 
+bool affect_light(const Shells& shells) {
+  return std::any_of(shells.begin(), shells.end(),
+                     [](const Shell& shell) { return shell.index != 1.0 || shell.absorption_per_mm > 0.0; });
+}
+
 template <class AnyLight>
 ShellLosses pass_plates(const Shells& shells, ShellPassage passage, const Vec3& direction, AnyLight& light) {
   ShellLosses losses;

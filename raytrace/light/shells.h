@@ -40,6 +40,9 @@ using Shells = std::vector<Shell>;
 /// Returns true if at least one shell changes the direction of light.
 bool deflect(const Shells& shells);
 
+/// Returns true if at least one shell reflects, refracts or absorbs light.
+bool affect_light(const Shells& shells);
+
 /// Direction in which light crosses the shells.
 enum class ShellPassage { to_part, from_part };
 

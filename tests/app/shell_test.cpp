@@ -181,7 +181,7 @@ TEST_F(Shell, RaysPassThem) {
 
 TEST_F(Shell, OthersRefuseThem) {
   const std::string design = kCubes + kPlate;
-  const std::string where = "design.toml:11: shell[0]";
+  const std::string where = "design.toml:11: shell[1]";
   EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", "--engine=exact"}), "--engine");
   EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
@@ -195,19 +195,19 @@ TEST_F(Shell, OthersRefuseThem) {
 
 TEST_F(Shell, KeysThatMakeNoSenseAreRefused) {
   const auto shell = [&](const std::string& keys) { return kCubes + "[[shell]]\n" + keys; };
-  EXPECT_EQ(refusal(shell("gap_mm = 1\n")), "design.toml:11: shell[0].thickness_mm");
-  EXPECT_EQ(refusal(shell("thickness_mm = 0\ngap_mm = 1\n")), "design.toml:12: shell[0].thickness_mm");
-  EXPECT_EQ(refusal(shell("thickness_mm = 1\ngap_mm = -1\n")), "design.toml:13: shell[0].gap_mm");
+  EXPECT_EQ(refusal(shell("gap_mm = 1\n")), "design.toml:11: shell[1].thickness_mm");
+  EXPECT_EQ(refusal(shell("thickness_mm = 0\ngap_mm = 1\n")), "design.toml:12: shell[1].thickness_mm");
+  EXPECT_EQ(refusal(shell("thickness_mm = 1\ngap_mm = -1\n")), "design.toml:13: shell[1].gap_mm");
   const std::string sizes = "thickness_mm = 1\ngap_mm = 1\n";
-  EXPECT_EQ(refusal(shell(sizes + "outer_radius_mm = 0\n")), "design.toml:14: shell[0].outer_radius_mm");
-  EXPECT_EQ(refusal(shell(sizes + "wedge_deg = [1]\n")), "design.toml:14: shell[0].wedge_deg");
-  EXPECT_EQ(refusal(shell(sizes + "tilt_deg = [0, 90]\n")), "design.toml:14: shell[0].tilt_deg");
-  EXPECT_EQ(refusal(shell(sizes + "material = \"cheese\"\n")), "design.toml:14: shell[0].material");
-  EXPECT_EQ(refusal(shell(sizes + "refractive_index = 0.9\n")), "design.toml:14: shell[0].refractive_index");
+  EXPECT_EQ(refusal(shell(sizes + "outer_radius_mm = 0\n")), "design.toml:14: shell[1].outer_radius_mm");
+  EXPECT_EQ(refusal(shell(sizes + "wedge_deg = [1]\n")), "design.toml:14: shell[1].wedge_deg");
+  EXPECT_EQ(refusal(shell(sizes + "tilt_deg = [0, 90]\n")), "design.toml:14: shell[1].tilt_deg");
+  EXPECT_EQ(refusal(shell(sizes + "material = \"cheese\"\n")), "design.toml:14: shell[1].material");
+  EXPECT_EQ(refusal(shell(sizes + "refractive_index = 0.9\n")), "design.toml:14: shell[1].refractive_index");
   EXPECT_EQ(refusal(shell(sizes + "absorption_per_mm = [[600, 1], [500, 1]]\n")),
-            "design.toml:14: shell[0].absorption_per_mm");
+            "design.toml:14: shell[1].absorption_per_mm");
   EXPECT_EQ(refusal(shell(sizes + "absorption_per_mm = [[400, 1], [500, 1]]\n")),
-            "design.toml:14: shell[0].absorption_per_mm");
+            "design.toml:14: shell[1].absorption_per_mm");
   std::string five = kCubes;
   for (int k = 0; k < 5; ++k) five += kPlate;
   EXPECT_EQ(refusal(five), "design.toml:11: shell");
@@ -220,23 +220,23 @@ TEST_F(Shell, KeysThatMakeNoSenseAreRefused) {
 TEST_F(Shell, SurfacesThatCrossAreRefused) {
   const auto shell = [&](const std::string& keys) { return kCubes + "[[shell]]\n" + keys; };
   EXPECT_EQ(refusal(shell("thickness_mm = 1\ngap_mm = 5\nouter_radius_mm = 9\n")),
-            "design.toml:14: shell[0].outer_radius_mm");
+            "design.toml:14: shell[1].outer_radius_mm");
   EXPECT_EQ(refusal(shell("thickness_mm = 1\ngap_mm = 5\ninner_radius_mm = -9\n")),
-            "design.toml:14: shell[0].inner_radius_mm");
+            "design.toml:14: shell[1].inner_radius_mm");
   EXPECT_EQ(refusal(shell("thickness_mm = 0.5\ngap_mm = 5\nouter_radius_mm = 40\n")),
-            "design.toml:12: shell[0].thickness_mm");
+            "design.toml:12: shell[1].thickness_mm");
   EXPECT_EQ(refusal(shell("thickness_mm = 0.5\ngap_mm = 5\nwedge_deg = [0, 10]\n")),
-            "design.toml:12: shell[0].thickness_mm");
-  EXPECT_EQ(refusal(shell("thickness_mm = 2\ngap_mm = 1\ntilt_deg = [10, 10]\n")), "design.toml:13: shell[0].gap_mm");
+            "design.toml:12: shell[1].thickness_mm");
+  EXPECT_EQ(refusal(shell("thickness_mm = 2\ngap_mm = 1\ntilt_deg = [10, 10]\n")), "design.toml:13: shell[1].gap_mm");
   EXPECT_EQ(refusal(shell("thickness_mm = 2\ngap_mm = 0.5\ninner_radius_mm = 40\nouter_radius_mm = 42\n")),
-            "design.toml:13: shell[0].gap_mm");
+            "design.toml:13: shell[1].gap_mm");
   EXPECT_EQ(refusal(shell("thickness_mm = 2\ngap_mm = 1\ntilt_deg = [10, 0]\n") + kPlate),
-            "design.toml:13: shell[0].gap_mm");
+            "design.toml:13: shell[1].gap_mm");
   const std::string endless = kEndless.substr(0, kEndless.find("[light]"));
   EXPECT_EQ(refusal(endless + "[[shell]]\nthickness_mm = 1\ngap_mm = 1\nouter_radius_mm = 50\n"),
-            "design.toml:13: shell[0].outer_radius_mm");
+            "design.toml:13: shell[1].outer_radius_mm");
   EXPECT_EQ(refusal(endless + "[[shell]]\nthickness_mm = 1\ngap_mm = 1\ntilt_deg = [0, 1]\n"),
-            "design.toml:13: shell[0].tilt_deg");
+            "design.toml:13: shell[1].tilt_deg");
 }
 
 }  // namespace
