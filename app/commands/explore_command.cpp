@@ -31,6 +31,8 @@ constexpr std::string_view kTitle = "retrace: prism arrays and their light";
 /// --set changes it.
 report::LiveStart start_of(const design::Design& design) {
   design::require_no_files(design, "which a self-contained page cannot read");
+  design::require_supported(
+      design, {.what = "retrace explore", .balls = true, .solids = true, .entrances = true, .wet_backs = true});
   const schema::Document& document = *design.document;
   const bool is_changed = !document.origin().overrides.empty();
   const std::string name =
