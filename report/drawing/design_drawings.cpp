@@ -59,7 +59,7 @@ std::string shells_svg(const design::Design& design, const studies::ShellSection
   LinePlot plot;
   plot.title = design::short_name(design) + ": shells in front of the part";
   plot.x_label = section.is_along_y ? "y (mm)" : "x (mm)";
-  plot.y_label = "z (mm)";
+  plot.y_label = "z (mm), to scale";
   std::vector<double> x;
   std::vector<double> z;
   const auto add = [&](const std::string& label, const std::vector<geometry::Vec2>& line) {
