@@ -61,7 +61,8 @@ class Shell : public ::testing::Test {
 TEST_F(Shell, OfIndexOneChangesNothing) {
   const std::string nothing = "[[shell]]\nthickness_mm = 2\ngap_mm = 5\nrefractive_index = 1\nabsorption_per_mm = 0\n";
   for (const std::string engine : {"exact", "embree", "cell"}) {
-    const Arguments how = {"--engine", engine, "--incidence=0,25", "--azimuth=20", "--samples", "4096"};
+    Arguments how = {"--engine", engine, "--incidence=0,25", "--azimuth=20"};
+    if (engine != "exact") how = with(how, {"--samples", "4096"});
     const Json bare = rre(kEndless, how);
     const Json behind = rre(kEndless + nothing, how);
     EXPECT_EQ(behind["engine"], engine);
