@@ -146,7 +146,7 @@ const Table kTables[] = {
      .former = "front"},
     {.name = "shell",
      .meaning = "Separate lens in the air in front of the entrance face, such as the outer lens of a lamp. The shells "
-                "are given in the order from the source to the part. At most 4 are allowed.",
+                "are given in the order from the source to the part.",
      .rows = shell_rows(),
      .presence = Presence::list,
      .when = kEntranceTable},
