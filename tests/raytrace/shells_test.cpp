@@ -150,6 +150,26 @@ TEST(Shells, OfIndexOneChangeNothing) {
               1e-12);
 }
 
+// Entrance faces that scatter light behave behind shells of index 1 as without shells, and keep all light behind
+// plates.
+TEST(Shells, ContaminatedEntranceFacesKeepAllLight) {
+  Optics bare = pmma();
+  bare.entrance.haze = {0.2, 0.1};
+  bare.entrance.dust = {0.1, 0.5, 0.4};
+  Optics behind_air = bare;
+  behind_air.shells = {plate(1.0, 1.5, 1.0)};
+  Optics behind_plate = bare;
+  behind_plate.shells = {plate(1.0, 1.5, kIndex, Vec3::UnitZ(), 0.02)};
+  for (const auto engine : {MonteCarlo::Engine::embree, MonteCarlo::Engine::cell}) {
+    const auto ledger = [&](const Optics& optics) {
+      return by_rays(cubes(), optics, from(15.0, 10.0), 4096, 0.5, engine).cones[0].ledger;
+    };
+    expect_same(ledger(behind_air), ledger(bare), 1e-12);
+    EXPECT_NEAR(ledger(behind_plate).total(), 1.0, 1e-9);
+    EXPECT_LT(ledger(behind_plate)[Account::retroreflected], ledger(bare)[Account::retroreflected]);
+  }
+}
+
 // A plate in front of a mirror multiplies the returned light by the transmittance of four surfaces, for s and p
 // separately, and by the absorption on both ways through the plate.
 TEST(Shells, PlateTransmitsBothPolarisationsTwice) {

@@ -83,12 +83,11 @@ std::string shells_text(const Inspection& i) {
   for (std::size_t k = 0; k < i.shells->shells.size(); ++k) {
     const ShellReport& shell = i.shells->shells[k];
     const design::OuterShell& given = i.design.shells[k];
-    text +=
-        fmt::format("  {:<20}{}, index {}, {} to {} mm thick along z, at least {} mm in front of the {}\n",
-                    fmt::format("shell {}", k + 1), given.refractive_index ? "given index" : printable(given.material),
-                    fixed(shell.refractive_index, 5), fixed(shell.clearance.min_thickness_mm, 4),
-                    fixed(shell.clearance.max_thickness_mm, 4), fixed(shell.clearance.min_gap_mm, 4),
-                    k + 1 < i.shells->shells.size() ? "next shell" : "part");
+    const std::string material = given.refractive_index ? std::string() : printable(given.material) + ", ";
+    text += fmt::format("  {:<20}{}index {}, {} to {} mm thick along z, at least {} mm in front of the {}\n",
+                        fmt::format("shell {}", k + 1), material, fixed(shell.refractive_index, 5),
+                        fixed(shell.clearance.min_thickness_mm, 4), fixed(shell.clearance.max_thickness_mm, 4),
+                        fixed(shell.clearance.min_gap_mm, 4), k + 1 < i.shells->shells.size() ? "next shell" : "part");
     text += fmt::format("  {:<20}transmits {} % in one crossing at its middle; {}\n", "",
                         fixed(100.0 * shell.transmittance, 3),
                         given.is_plane_parallel() ? "plane-parallel" : "changes the direction of light");
