@@ -527,18 +527,20 @@ TEST(ZonesWithOutline, SolidsAreClosed) {
 }
 
 TEST(ZonesWithOutline, FaultsAreFound) {
-  const ZonedSpec one = outlined_plate(holed(), 0.0, {{{box(0, 0, 5, 3)}, 0.0, hexagons(0.5)}});
-  EXPECT_TRUE(fault_of_zones(one)) << "a part of the outline is not covered";
-  const ZonedSpec outside = outlined_plate(notched(), 0.0,
-                                           {{{box(0, 0, 5.2, 2.0), box(0, 2.0, 2.6, 4.0)}, 0.0, hexagons(0.5)},
-                                            {{box(2.6, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)}});
-  ASSERT_TRUE(fault_of_zones(outside)) << "the second zone is in the notch";
-  EXPECT_EQ(fault_of_zones(outside)->zone, 1U);
+  const Outline angle =
+      oriented({polygon_of_corners({{0, 0}, {5.2, 0}, {5.2, 2.0}, {2.6, 2.0}, {2.6, 4.0}, {0, 4.0}})});
+  const auto fault = [&](std::vector<Polygon> first, std::vector<Polygon> second) {
+    return fault_of_zones(
+        outlined_plate(angle, 0.0, {{std::move(first), 0.0, hexagons(0.5)}, {std::move(second), 0.0, hexagons(0.5)}}));
+  };
+  EXPECT_FALSE(fault({box(0, 0, 5.2, 2.0)}, {box(0, 2.0, 2.6, 4.0)}));
+  EXPECT_TRUE(fault({box(0, 0, 5.2, 2.0)}, {box(0, 2.0, 2.5, 4.0)})) << "a part of the plate is not covered";
+  EXPECT_TRUE(fault({box(0, 0, 5.2, 2.1)}, {box(0, 2.0, 2.6, 4.0)})) << "the zones overlap inside the outline";
   // Regions may overlap outside of the outline.
-  const ZonedSpec beyond = outlined_plate(notched(), 0.0,
-                                          {{{box(0, 0, 5.2, 2.0), box(2.6, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)},
-                                           {{box(0, 2.0, 5.2, 4.0)}, 0.0, hexagons(0.5)}});
-  EXPECT_FALSE(fault_of_zones(beyond));
+  EXPECT_FALSE(fault({box(0, 0, 5.2, 2.0), box(2.6, 2.0, 5.2, 4.0)}, {box(0, 2.0, 5.2, 4.0)}));
+  const auto outside = fault({box(0, 0, 5.2, 2.0), box(0, 2.0, 2.6, 4.0)}, {box(2.6, 2.0, 5.2, 4.0)});
+  ASSERT_TRUE(outside) << "the second zone is in the notch";
+  EXPECT_EQ(outside->zone, 1U);
 }
 
 }  // namespace

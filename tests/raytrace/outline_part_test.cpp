@@ -191,7 +191,7 @@ TEST(OutlinePart, ElementsWithOwnPlanesAreThoseOfTheArray) {
 TEST(OutlinePart, RandomOutlinesLoseNoRay) {
   std::mt19937 random(1);
   constexpr int kOutlines = 200;
-  const std::uint64_t segments = test::sample_size<std::uint64_t>(4'000'000, 100'000'000) / kOutlines;
+  const std::uint64_t segments = test::sample_size<std::uint64_t>(2'000'000, 100'000'000) / kOutlines;
   std::uint64_t misses = 0;
   for (int k = 0; k < kOutlines; ++k) {
     const Part part =
