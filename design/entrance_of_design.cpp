@@ -25,12 +25,12 @@ geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Par
 }
 
 /// Returns the height of the origin of the entrance face. If the elements are placed below the face, z = 0 is the
-/// highest point of the surface at the distance of the wall below the face.
+/// lowest point of the surface at the distance of the wall below the face.
 double origin_height_mm(const geometry::Part& part) {
   const std::optional<geometry::Substrate>& substrate = part.spec.substrate;
   if (!substrate || !std::holds_alternative<geometry::OffsetSubstrate>(substrate->shape)) return part.thickness_mm;
   const Vec2 half_mm = 0.5 * Vec2(part.spec.array.x_length_mm, part.spec.array.y_length_mm);
-  return -geometry::measure_substrate(geometry::substrate_surface_of(part.spec), half_mm).highest_mm;
+  return -geometry::measure_substrate(geometry::substrate_surface_of(part.spec), half_mm).lowest_mm;
 }
 
 Vec3 origin_of(const CurvedEntrance& entrance, const geometry::Part& part) {

@@ -109,7 +109,8 @@ void ArraySheet::lay_out_finite() {
 
 void ArraySheet::lay_on_substrate() {
   surface.emplace(substrate_surface_of(*spec));
-  top_mm = measure_substrate(*surface, centre_mm).highest_mm;
+  const SubstrateMeasures measures = measure_substrate(*surface, centre_mm);
+  zero_mm = surface->is_offset() ? measures.lowest_mm : measures.highest_mm;
   is_upright = surface->is_upright();
   if (is_upright) return;
   tolerance_mm = std::max(sliver_mm, 2.0 * kWhole * centre_mm.maxCoeff());
@@ -186,7 +187,7 @@ SheetPortion::SheetPortion(const ArraySheet& sheet, std::int64_t i, std::int64_t
   if (sheet.surface) {
     const Vec3 origin = sheet.surface->frame_at(at_ - sheet.centre_mm).origin;
     if (!sheet.is_upright) origin_ = sheet.centre_mm + origin.head<2>();
-    height_ = is_alone ? sheet.top_mm : origin.z();
+    height_ = is_alone ? sheet.zero_mm : origin.z();
   }
   part_ = moved(sheet.part_mm, -origin_);
   reach_ = moved(sheet.coverage_mm, -at_);

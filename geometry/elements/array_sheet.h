@@ -52,7 +52,9 @@ struct ArraySheet {
   Rectangle coverage_mm;          ///< area of the sheet that covers the part
   /// area of the sheet that elements fill; the rest is flat land (surface without elements)
   Rectangle block_mm;
-  double top_mm = 0.0;  ///< height of the substrate's highest point, which is placed at z = 0 of the part
+  /// Height of the substrate that is placed at z = 0 of the part. It is the height of its highest point or, below an
+  /// entrance surface, of its lowest point. The entrance surface is then above z = 0 everywhere.
+  double zero_mm = 0.0;
   /// cells that extend beyond a border of the sheet by at most this length count as inside
   double sliver_mm = 0.0;
   double tolerance_mm = 0.0;              ///< tolerance for the border of the part in plan
@@ -116,7 +118,7 @@ class SheetPortion {
   const Rectangle& block() const { return block_; }
   /// Returns the origin in the part frame.
   const Vec2& origin_mm() const { return origin_; }
-  double height_mm() const { return height_ - sheet_->top_mm; }
+  double height_mm() const { return height_ - sheet_->zero_mm; }
 
  private:
   Vec2 plan_of(const Vec2& on_sheet, double rim_mm = 0.0) const;
