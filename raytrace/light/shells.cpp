@@ -51,6 +51,7 @@ std::optional<Crossing> crossing_of(const ShellSurface& surface, const Vec3& pos
 template <class AnyLight>
 std::optional<Vec3> refract(const Vec3& direction, const Vec3& facing_normal, double ratio, AnyLight& light,
                             ShellLosses& losses) {
+  if (ratio == 1.0) return direction;
   const double before = light.power();
   const double cos_incidence = -facing_normal.dot(direction);
   const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
