@@ -31,7 +31,8 @@ constexpr double kAnglesOfMap = 8.0;
 constexpr double kAnglesOfSamples = 8.0;
 // Every n-th sample is compared with rays.
 constexpr std::size_t kComparedSamples = 6;
-// Minimum power of beams that are compared with rays, as a fraction of the light on an element.
+// Minimum power of beams that are compared with rays, as a fraction of the light that an element would return if the
+// body absorbed light but no other light were lost.
 constexpr double kMinComparedPower = 1e-3;
 // Maximum angle between rays and the model of tangent planes, as a fraction of the sum of the radii of source and
 // receiver. The readings then change by less than about 1 %.
@@ -134,8 +135,8 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
             common.rre += sample.power_fraction * beam.stokes.i;
             scattered_from_cone -= std::expm1(-variance) * sample.power_fraction * beam.stokes.i;
           }
-        const bool is_in_window =
-            is_within(beam.direction, scene->to_source, 1.5 * request_.window_deg) && beam.stokes.i > kMinComparedPower;
+        const bool is_in_window = is_within(beam.direction, scene->to_source, 1.5 * request_.window_deg) &&
+                                  beam.stokes.i > kMinComparedPower * body_transmittance(wavelength);
         if (compares_rays && is_in_window) reading.error.add(elements.surface(), *scene, beam);
       });
   if (!beams.complete) return reading;
