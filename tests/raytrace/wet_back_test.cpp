@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "geometry/part/chosen_elements.h"
-#include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/outlined_parts.h"
 
@@ -289,14 +288,6 @@ TEST(WetBack, NotchesAndHolesAreWetTogetherWithTheirElements) {
     const Ledger a = traced(part, behind, light).ledger;
     const Ledger b = traced(part, wet, light).ledger;
     for (std::size_t k = 0; k < kAccountCount; ++k) EXPECT_NEAR(a.power[k], b.power[k], 1e-12);
-    // Beams and rays use the choice in different manners.
-    const Optics half = wet_behind(pmma(), part, geometry::HalfPlane{{1.1, 0.0}, 0.0}, kWater);
-    BeamPolicy policy;
-    policy.cutoff = 1e-4;
-    const Ledger beams = BeamTracer(part).trace(half, light, {0.5}, policy).ledgers[0];
-    const Ledger rays = traced(part, half, light, 1U << 16).ledger;
-    for (std::size_t k = 0; k < kAccountCount; ++k)
-      EXPECT_NEAR(beams.power[k], rays.power[k], beams[Account::truncated] + 2e-3) << kAccountNames[k];
   }
 }
 
