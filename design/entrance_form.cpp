@@ -33,8 +33,8 @@ void find_offset(Design& design) {
     geometry::check_folds(*surface, geometry::to_polygon({-half_mm, half_mm}));
   });
   offset->entrance_mm = [surface](const Vec2& position_mm) { return surface->at(position_mm).height_mm; };
-  const geometry::SubstrateMeasures measures = read_named(
-      design.where(geometry::substrate_shape_key(*part.substrate)), [&] { return geometry::check_substrate(part); });
+  const geometry::SubstrateMeasures measures = read_named(design.where(geometry::substrate_shape_key(*part.substrate)),
+                                                          [&] { return geometry::check_substrate(part); });
   part.thickness_mm = measures.highest_mm - measures.lowest_mm + offset->wall_mm;
 }
 
