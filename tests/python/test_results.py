@@ -334,7 +334,8 @@ class Designs(unittest.TestCase):
         self.assertTrue(made.is_manifold)
         entrance = vertices[faces[labels == rt.FaceKind.ENTRANCE]]
         # The lenslets are 0.0225 mm high. The plane between them is 3.01126 mm above the back.
-        self.assertAlmostEqual(entrance[..., 2].min(), 3.01126, 9)
+        # Blends are lower by 1 um.
+        self.assertAlmostEqual(entrance[..., 2].min(), 3.01126, delta=0.001)
         self.assertAlmostEqual(entrance[..., 2].max(), 3.01126 + 0.0225, delta=0.002)
         fine = rt.mesh(design, surface_error_mm=0.0005)
         self.assertAlmostEqual(made.volume_mm3, fine.volume_mm3, delta=4 * 0.0025)
