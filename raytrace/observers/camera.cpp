@@ -366,9 +366,9 @@ struct CameraTracer::Impl::Block {
     const double before = behind();
     PathWalker& walker = walkers[wavelength];
     accumulator.begin(start.owner);
-    const bool is_met = walker.launch(start.position, start.ray, key, replicate, sample);
-    accumulator.on_transmission(start.owner, is_met ? behind() - before : start.ray.light.power());
-    if (!is_met) return false;
+    const bool meets_part = walker.launch(start.position, start.ray, key, replicate, sample);
+    accumulator.on_transmission(start.owner, meets_part ? behind() - before : start.ray.light.power());
+    if (!meets_part) return false;
     Contact& contact = paths[start.owner].contact;
     if (walker.arrival() == PathWalker::Arrival::entrance) contact.kind = Contact::Kind::face;
     if (walker.arrival() == PathWalker::Arrival::side) contact.kind = Contact::Kind::side;

@@ -310,7 +310,7 @@ class CurvedPhotometry : public Entrance {
     folder_.write("design.toml", design);
     folder_.write("limits.csv",
                   "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
-                  "S,,red,0.2,0,0,1,cd/lx/m2,read\nS,,red,0.4,10,0,1,cd/lx/m2,read\n");
+                  "S,,white,0.2,0,0,1,cd/lx/m2,read\nS,,white,0.4,10,0,1,cd/lx/m2,read\n");
     Arguments all = {
         "photometry", "design.toml", "--standard=limits.csv", "--area-cm2=2", "--light=design", "--no-advice", "--json",
         "-"};
@@ -332,8 +332,9 @@ TEST_F(CurvedPhotometry, HasAVerdictBehindALens) {
   EXPECT_GT(model["elements"].get<int>(), 20);
   EXPECT_LT(model["max_angle_arcmin"].get<double>(), model["allowed_angle_arcmin"].get<double>());
   EXPECT_NEAR(model["allowed_angle_arcmin"].get<double>(), 1.0, 1e-9);
-  for (const Json& point : json["points"])
-    EXPECT_LT(point["std_error_mcd_per_lx"].get<double>(), 0.05 * point["value_mcd_per_lx"].get<double>());
+  // The second point is dark. Its error is compared with the light of the first one.
+  const double bright = json["points"][0]["value_mcd_per_lx"].get<double>();
+  for (const Json& point : json["points"]) EXPECT_LT(point["std_error_mcd_per_lx"].get<double>(), 0.05 * bright);
 }
 
 // Over wide discs, diffraction hardly matters. Beams behind tangent planes then agree with rays through the surface.
@@ -343,7 +344,7 @@ TEST_F(CurvedPhotometry, AgreesWithRaysOverWideDiscs) {
   const Json beams = measure(cubes(1.0), wide, 0);
   Arguments by_rays = wide;
   by_rays.insert(by_rays.end(), {"--engine=montecarlo", "--samples=262144"});
-  const Json rays = measure(cubes(1.0), by_rays, 0);
+  const Json rays = measure(cubes(1.0), by_rays, 1);  // undetermined without diffraction
   EXPECT_EQ(rays["engine"], "embree");
   for (std::size_t k = 0; k < 2; ++k) {
     const double value = rays["points"][k]["value_mcd_per_lx"].get<double>();
@@ -524,8 +525,9 @@ TEST_F(Entrance, StudiesTakeIt) {
   EXPECT_NE(table.find("1.325"), std::string::npos) << table;  // depth of the prisms + height of the vertex
   EXPECT_NE(table.find("1.625"), std::string::npos) << table;
   folder_.write("study.toml", study + "[[quantity]]\nkind = \"tir_limit_deg\"\n");
-  EXPECT_EQ(refused_at(retrace(folder_, {"sweep", "study.toml", "-o", "other"})),
-            "design.toml:9: entrance_surface.turned_part");
+  const Outcome failed = retrace(folder_, {"sweep", "study.toml", "-o", "other"});
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_NE(failed.err.find("design.toml:9: entrance_surface.turned_part"), std::string::npos) << failed.err;
 }
 
 TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {

@@ -115,6 +115,7 @@ class RayByRay : public ::testing::TestWithParam<std::size_t> {
   Vec3 point_in_plate() {
     while (true) {
       const Vec3 p = random.within(box, 0.02, part.thickness_mm - 0.02);
+      if (!contains(part.outline, p.head<2>(), -1e-6)) continue;
       if (part.entrance_pieces.empty() || std::ranges::any_of(part.entrance_pieces, [&](const Polygon& piece) {
             return contains(piece, p.head<2>(), -1e-6);
           }))

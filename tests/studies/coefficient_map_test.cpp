@@ -113,8 +113,9 @@ TEST(CoefficientMap, RatiosOfEqualDesignsAreOne) {
 // The engine and the warnings of the compared design are checked like those of the first one.
 TEST(CoefficientMap, ComparedDesignsAreChecked) {
   design::Design rough = design_of(honeycomb(2.0));
-  rough.surface.texture = design::HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
+  rough.surface.texture = design::AbgTexture{.a = 1e-4, .b = 1e-2, .g = 2.0};
   PhotometrySettings request = map_request({{0.0, 10.0}, {0.1, 0.3}, {}});
+  request.engine = raytrace::Engine::exact;
   request.compared = ComparedDesign{rough, {}, {}};
   EXPECT_EQ(refusal_of([&] { PhotometryStudy(design_of(honeycomb(2.0)), request); }), "engine");
   request.engine = raytrace::Engine::montecarlo;

@@ -284,14 +284,6 @@ TEST_F(Image, WrongSheetsAreRefused) {
 }
 
 /// A finite part is shown at its own size. Options for the size of a sheet are therefore refused.
-TEST_F(Image, PartsWithNotchesAreRefused) {
-  folder_.write("notch.toml",
-                "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[body]\nthickness_mm = 1\n"
-                "refractive_index = 1.4917\n[outline]\npolygon_mm = [[0, 0], [9, 0], [9, 9], [5, 4]]\n");
-  for (const std::string kind : {"--camera", "--road"})
-    EXPECT_TRUE(refused_at(retrace(folder_, {"image", "notch.toml", kind})).ends_with(": outline")) << kind;
-}
-
 TEST_F(Image, FinitePartsTakeNoSheet) {
   const Arguments camera = {"image", example("rtp_brick_2mm.toml"), "--camera", "-o", "i", "--json", "i.json"};
   const auto names = folder_.names();
