@@ -35,6 +35,8 @@ Job patch_of(Job job) {
   if (job.array.arrangement == geometry::Arrangement::single) return job;
   geometry::ArrayLayout& array = job.array;
   array.pattern.clear();
+  array.outline = nullptr;
+  job.outline.reset();
   array.x_offset_mm = array.y_offset_mm = 0.0;
   const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(job.element)).size();
   // Offset rows are shifted against each other, and cube corners interlock. Therefore, a slightly larger area is needed

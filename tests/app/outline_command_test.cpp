@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tests/app/program.h"
-#include "tests/support/sample_size.h"
 
 // Tests of parts with an outline with the program: from a design to NC text and back, and the commands that take them.
 
@@ -75,7 +74,6 @@ const Arguments kDmc = {"--tool-width-mm", "0.5", "--strategy", "dmc"};
 
 // The machined part has the outline of the design and returns the light of the design.
 TEST_F(OutlineCommand, PrismsComeBackAsTheDesign) {
-  if (!is_long_run()) GTEST_SKIP() << "takes minutes, because programs of parts with notches are slow to compute";
   make(prisms(table(kNotched + "holes_mm = [[0.7, 0.6, 0.15]]\nmargin_mm = 0.1\n"), "partial_elements = \"omit\"\n"),
        kTwoStep);
   const Json design = inspected("design.toml");
@@ -109,7 +107,6 @@ TEST_F(OutlineCommand, TheJobContainsTheOutline) {
 
 // A program for the whole rectangle cuts the land outside of the outline, which is found.
 TEST_F(OutlineCommand, CutsOutsideOfTheOutlineAreFound) {
-  if (!is_long_run()) GTEST_SKIP() << "takes minutes, because programs of parts with notches are slow to compute";
   make(prisms("", "x_length_mm = 3\ny_length_mm = 2.4\n"), kTwoStep);
   const std::string whole = folder_.read("nc/program.ngc");
   make(prisms(table(kNotched), "partial_elements = \"omit\"\n"), kTwoStep);
@@ -125,7 +122,6 @@ TEST_F(OutlineCommand, CutsOutsideOfTheOutlineAreFound) {
 }
 
 TEST_F(OutlineCommand, CubeCornersComeBackAsTheDesign) {
-  if (!is_long_run()) GTEST_SKIP() << "takes minutes, because programs of parts with notches are slow to compute";
   for (const std::string kind : {"triangular_icc", "hexagonal_icc"}) {
     make(cubes(kind, table(kNotched + "margin_mm = 0.1\n")), kDmc);
     const Json design = inspected("design.toml");
@@ -154,7 +150,6 @@ TEST_F(OutlineCommand, PrismsOnASubstrateAreCutInsideTheOutline) {
 }
 
 TEST_F(OutlineCommand, ZonesAreCutInsideTheOutline) {
-  if (!is_long_run()) GTEST_SKIP() << "takes minutes, because programs of parts with notches are slow to compute";
   make(cubes("triangular_icc", table(kNotched),
              "[[zone]]\narea_fraction = 0.4\n[[zone]]\narea_fraction = 0.6\nrotation_deg = 20\n"),
        kDmc);
@@ -180,7 +175,6 @@ TEST_F(OutlineCommand, ReachableCubeCornersAreInsideTheOutline) {
 
 // A mask selects elements of the bounding box, of which those inside the outline remain.
 TEST_F(OutlineCommand, MasksSelectElementsInsideTheOutline) {
-  if (!is_long_run()) GTEST_SKIP() << "takes minutes, because programs of parts with notches are slow to compute";
   std::string picture = "P2\n15 9\n255\n";
   for (int k = 0; k < 15 * 9; ++k) picture += k % 15 < 8 ? "0\n" : "255\n";
   folder_.write("mask.pgm", picture);
