@@ -47,8 +47,8 @@ double width(const Polygon& polygon);
 /// Returns true if a point is inside a convex polygon or on its border.
 bool contains(const Polygon& polygon, const Vec2& point);
 
-/// Returns true if a point is inside a convex polygon, or outside of its sides by at most `tolerance_mm`. With a
-/// negative tolerance, the point must be inside and at least |tolerance_mm| away from all sides.
+/// Returns true if a point is inside a convex polygon or outside of it by at most `tolerance_mm`. If the tolerance is
+/// negative, the point must be inside, at a distance of at least |tolerance_mm| from all sides.
 bool contains(const Polygon& polygon, const Vec2& point, double tolerance_mm);
 
 /// Returns true if every vertex is in the rectangle, which is enlarged by `tolerance_mm` on all sides.

@@ -37,9 +37,9 @@ struct ArrayLayout {
   /// mask means that all elements exist. The last column of a shifted row is beyond the border and is ignored. A row of
   /// cube corners has as many characters as there are complete cells at the y of this row.
   std::vector<std::string> pattern;
-  /// Outline of a part that is not a rectangle along the axes, or null. The array is laid out as in the bounding box of
-  /// the outline, whose lengths are `x_length_mm` and `y_length_mm`. The outline then cuts it. The offsets of the
-  /// array are equal to the width of the outline's margin.
+  /// Outline of a part that is not a rectangle parallel to the axes, or null. The array fills the bounding box of the
+  /// outline, which has the lengths `x_length_mm` and `y_length_mm`. The outline then cuts the array. `x_offset_mm` and
+  /// `y_offset_mm` are equal to the width of the outline's margin.
   std::shared_ptr<const PlanRegion> outline;
 };
 

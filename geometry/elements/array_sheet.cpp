@@ -94,7 +94,7 @@ void ArraySheet::lay_out_finite() {
   const Vec2 length(spec->array.x_length_mm, spec->array.y_length_mm);
   centre_mm = 0.5 * length;
   part_mm = coverage_mm = {Vec2::Zero(), length};
-  // The extent and the offsets of the array describe a rectangle with a margin.
+  // A rectangle whose margin is equal to the offsets of the array needs no outline.
   const PlanRegion* const given = spec->array.outline.get();
   if (given != nullptr && !(given->is_box() && given->margin_mm == spec->array.x_offset_mm)) outline = given;
   if (spec->substrate) lay_on_substrate();

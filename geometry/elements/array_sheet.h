@@ -52,8 +52,9 @@ struct ArraySheet {
   Rectangle coverage_mm;          ///< area of the sheet that covers the part
   /// area of the sheet that elements fill; the rest is flat land (surface without elements)
   Rectangle block_mm;
-  /// Height of the substrate that is placed at z = 0 of the part. It is the height of its highest point or, below an
-  /// entrance surface, of its lowest point. The entrance surface is then above z = 0 everywhere.
+  /// Height of the substrate that becomes z = 0 of the part. It is the height of the highest point of the substrate.
+  /// For a substrate below an entrance surface, it is the height of the lowest point, so that the entrance surface is
+  /// above z = 0 everywhere.
   double zero_mm = 0.0;
   /// cells that extend beyond a border of the sheet by at most this length count as inside
   double sliver_mm = 0.0;
@@ -100,11 +101,11 @@ class SheetPortion {
   std::vector<Polygon> in_element_area(Polygon in_plan) const;
   /// Returns the portions of a polygon in plan on the flat margin of the outline. Without an outline, there are none.
   std::vector<Polygon> in_outline_margin(Polygon in_plan) const;
-  /// Returns the portions of a polygon in plan that are inside the outline, on elements or on its margin. Without an
-  /// outline, returns the polygon.
+  /// Returns the portions of a plan polygon that are inside the outline, including the outline's margin. Returns the
+  /// whole polygon if there is no outline.
   std::vector<Polygon> in_outline(Polygon in_plan) const;
-  /// Returns true if a polygon in plan is completely inside the outline's margin, where elements are. Without an
-  /// outline, returns true.
+  /// Returns true if a plan polygon is completely inside the area of elements, which the margin of the outline
+  /// encloses. Returns true if there is no outline.
   bool is_in_element_area(const Polygon& in_plan) const;
   /// Returns the borders of the outline and of the area of elements. Walls on them are border walls of the array.
   std::vector<PolygonLoop> outline_borders() const;
@@ -123,8 +124,8 @@ class SheetPortion {
  private:
   Vec2 plan_of(const Vec2& on_sheet, double rim_mm = 0.0) const;
   SubstrateFrame frame_at(const Vec2& on_sheet) const;
-  /// Returns the portions of a polygon in plan that are inside a region of the outline. Without an outline, returns the
-  /// polygon.
+  /// Returns the portions of a plan polygon that are inside a region of the outline. Returns the whole polygon if there
+  /// is no outline.
   std::vector<Polygon> clipped(Polygon in_plan, ConvexRegion PlanRegion::*region) const;
 
   const ArraySheet* sheet_;

@@ -19,15 +19,16 @@ namespace {
 
 /// Maximum distance at which two vertices are merged, as a fraction of the size of an element.
 constexpr double kMergeFraction = 1e-8;
-/// Number of cells along the longer side of the part with which the division of an exact surface begins.
+/// Number of square cells along the longer side of an exact surface, before cells are divided.
 constexpr int kFirstCells = 8;
 /// Maximum number of times that a cell is divided into four cells.
 constexpr int kMaxDivisions = 12;
-/// Fraction of the permitted error that a cell may have. Vertices on the sides of a cell that belong to smaller
-/// neighbours change its triangles afterwards.
+/// Maximum error of the triangles of a cell when the cell is made, as a fraction of the permitted error. It is less
+/// than 1 because the triangles change later, when vertices of smaller neighbouring cells are inserted on the sides of
+/// the cell.
 constexpr double kFractionOfError = 0.7;
-/// Fraction of the smallest gap between a side's lower edge and the surface at which inner vertices of the side are
-/// placed.
+/// Height of the inner vertices of a side above the side's lower edge, as a fraction of the smallest gap between this
+/// edge and the entrance face.
 constexpr double kInnerHeight = 0.5;
 
 using Ring = std::vector<std::uint32_t>;
@@ -38,8 +39,8 @@ class ChordError {
   /// \param spacing_mm maximum distance between points at which the distance is measured
   ChordError(const EntranceSurface& surface, double spacing_mm) : surface_(surface), spacing_mm_(spacing_mm) {}
 
-  /// Returns the largest distance along z between a triangle and the surface at points of a grid within the triangle.
-  /// The search ends if a distance exceeds `enough_mm`.
+  /// Returns the maximum distance along z between a triangle and the surface, at points of a grid within the triangle.
+  /// Stops and returns a distance as soon as it exceeds `enough_mm`.
   double of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double enough_mm) const {
     const double longest_mm = std::max({(b - a).head<2>().norm(), (c - b).head<2>().norm(), (a - c).head<2>().norm()});
     const int steps = std::max(3, static_cast<int>(std::ceil(longest_mm / spacing_mm_)));
@@ -55,7 +56,8 @@ class ChordError {
 
   Vec3 on_surface(const Vec2& p) const { return {p.x(), p.y(), surface_.at(p).height_mm}; }
 
-  /// Returns the error of the triangles between the centroid of a polygon and its sides.
+  /// Returns the maximum distance between the surface and the triangles that join the centroid of a polygon to its
+  /// sides.
   double of_polygon(const Polygon& polygon, double enough_mm) const {
     const Vec3 hub = on_surface(centroid(polygon));
     double error_mm = 0.0;
@@ -70,7 +72,7 @@ class ChordError {
   double spacing_mm_;
 };
 
-/// Divides the plan of an entrance face into convex polygons on which triangles are accurate enough.
+/// Divides the plan of an entrance face into convex polygons that are small enough for accurate triangles.
 class PlanDivision {
  public:
   PlanDivision(const ChordError& chords, double max_error_mm, double tolerance_mm)
@@ -116,8 +118,8 @@ class PlanDivision {
   std::vector<Polygon> polygons_;
 };
 
-/// Adds the sides and the entrance face to the back of a part. The vertices of the entrance face are numbered by their
-/// positions in plan, so that sides and neighbouring polygons share them.
+/// Builds a closed boundary from the back of a part by adding the sides and the entrance face. A vertex of the entrance
+/// face is identified by its position in plan, so that sides and neighbouring polygons share vertices.
 class BoundaryBuilder {
  public:
   /// \param cell_mm typical distance between the vertices of the entrance face
@@ -125,11 +127,11 @@ class BoundaryBuilder {
       : mesh_(back_boundary(part)), tolerance_mm_(kMergeFraction * part.size_mm), plan_(tolerance_mm_, cell_mm) {
     rims_ = part.patches[part.placements.front().patch].border_rim;
     if (rims_.empty()) rims_ = rims_of_open_edges();
-    // The ends of the sides are numbered first, so that other vertices near them are merged with them.
+    // The ends of the sides are the first vertices, so that later vertices near them are merged with them.
     for (const Ring& rim : rims_) ends_.emplace_back(plan_.add(place(rim.front())), plan_.add(place(rim.back())));
   }
 
-  /// Adds a polygon of the entrance face. It is convex in plan and counter-clockwise seen from above.
+  /// Adds a polygon of the entrance face. The polygon must be convex in plan and counter-clockwise seen from above.
   void add_polygon(const std::vector<Vec3>& corners) {
     Ring ring;
     for (const Vec3& p : corners) {
@@ -140,8 +142,8 @@ class BoundaryBuilder {
     if (ring.size() >= 3) polygons_.push_back(std::move(ring));
   }
 
-  /// Completes the boundary.
-  /// \param height heights of the entrance face; empty: heights are interpolated within the polygons
+  /// Adds all triangles of the entrance face and the sides, and returns the boundary.
+  /// \param height heights of the entrance face; empty: heights are interpolated along the sides of the polygons
   BoundaryMesh build(const EntranceHeights& height) {
     for (Ring& ring : polygons_) ring = with_vertices_on_sides(ring, height);
     first_ = static_cast<std::uint32_t>(mesh_.vertices.size());
@@ -155,8 +157,8 @@ class BoundaryBuilder {
  private:
   Vec2 place(std::uint32_t vertex) const { return mesh_.vertices[vertex].head<2>(); }
 
-  /// Returns the lower borders of the sides for a back without SurfacePatch::border_rim, from the edges that only one
-  /// triangle has.
+  /// Returns the lower borders of the sides for a back without SurfacePatch::border_rim. They are found from the edges
+  /// of the back that belong to only one triangle.
   std::vector<Ring> rims_of_open_edges() const {
     const auto edges = open_edges(mesh_);
     std::map<std::pair<double, double>, std::vector<std::pair<double, std::uint32_t>>> columns;
@@ -184,7 +186,7 @@ class BoundaryBuilder {
     return rims;
   }
 
-  /// Returns a polygon with all vertices on its sides. Vertices without a height get one.
+  /// Returns a polygon to which all vertices on its sides are added. Sets the heights of added vertices that have none.
   Ring with_vertices_on_sides(const Ring& corners, const EntranceHeights& height) {
     Ring ring;
     for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -218,7 +220,7 @@ class BoundaryBuilder {
   /// Adds the side between a rim and the entrance face.
   /// \param ends plan vertices above both ends of the rim
   void add_side(const Ring& rim, const std::pair<std::uint32_t, std::uint32_t>& ends) {
-    // Part of the side below the straight line between the upper ends of the rim. It is convex.
+    // First comes the part of the side below the straight line between the upper ends of the rim. This part is convex.
     if (rim.size() > 2) add_fan(mesh_, rim, FacetRole::side);
     Ring top = {first_ + ends.first};
     for (const std::uint32_t k : plan_.on_segment(ends.first, ends.second)) top.push_back(first_ + k);
@@ -227,7 +229,7 @@ class BoundaryBuilder {
   }
 
   /// Adds triangles between a straight lower edge and a curved upper edge. If the upper edge has inner vertices, a row
-  /// of vertices parallel to the lower edge and below the upper edge is added. Each triangle is then within the strip.
+  /// of vertices is added between the two edges, parallel to the lower edge. No triangle then extends beyond the strip.
   void add_strip(std::uint32_t from, std::uint32_t to, const Ring& top) {
     const std::size_t last = top.size() - 1;
     std::vector<double> line_mm;

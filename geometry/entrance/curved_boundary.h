@@ -14,17 +14,18 @@ namespace retrace::geometry {
 /// Closed boundary of a part with a curved entrance face.
 struct CurvedBoundary {
   BoundaryMesh mesh;
-  /// Largest distance along z between the triangles of the entrance face and the exact surface, at points within the
-  /// triangles. 0 for an entrance face that is a mesh, because its own triangles are used.
+  /// Maximum distance along z between the triangles of the entrance face and the exact surface, measured at points
+  /// within the triangles. It is 0 if the entrance face is a mesh, whose own triangles are used.
   double entrance_error_mm = 0.0;
 };
 
 /// Maximum number of polygons into which curved_boundary() divides an entrance face.
 inline constexpr std::size_t kMaxEntrancePolygons = 200'000;
 
-/// Returns the closed boundary of a finite part: back surface, border walls, sides and entrance face. Neighbouring
-/// triangles share complete edges. An exact surface is approximated by triangles with corners on the surface. Square
-/// cells of the plan are divided until the triangles are accurate enough.
+/// Returns the closed boundary of a finite part: back surface, border walls, sides and entrance face. Triangles that
+/// touch each other share complete edges. An exact surface is approximated by triangles whose corners are on the
+/// surface. The plan is divided into square cells, and cells are divided further until their triangles are accurate
+/// enough.
 /// \param max_error_mm maximum distance along z between the triangles and an exact surface; > 0
 /// \pre the back surface is a single patch, and the entrance face covers the part
 /// \throw BudgetError if an exact surface needs more than kMaxEntrancePolygons polygons

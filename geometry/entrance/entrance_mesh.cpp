@@ -74,7 +74,7 @@ std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
   return triangles;
 }
 
-/// Returns the maximum distance by which rounding to single precision may have moved a vertex.
+/// Returns the maximum distance by which rounding of coordinates to single precision may have moved a vertex.
 double rounding_mm(const std::vector<Vec3>& vertices) {
   double largest_mm = 0.0;
   for (const Vec3& p : vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
@@ -116,7 +116,7 @@ void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
   }
 }
 
-/// Moves a point to a side of a convex outline if it is nearer to this side than the tolerance.
+/// Moves a point onto a side of a convex outline if the distance between point and side is below the tolerance.
 Vec3 settled(Vec3 p, const Polygon& outline, double tolerance_mm) {
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const Vec2& a = outline[k];

@@ -47,9 +47,9 @@ SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec
 /// exact surfaces.
 EntranceRange range_of_entrance_mesh(const SurfacePatch& patch, const Polygon& outline);
 
-/// Returns the portions of the triangles of an entrance mesh over the outline of a part. They are convex in plan and
-/// counter-clockwise seen from above. Corners that are nearer to a side of the outline than the rounding errors of
-/// single precision are moved onto this side.
+/// Clips the triangles of an entrance mesh to the outline of a part. The returned polygons are convex in plan and
+/// counter-clockwise seen from above. Their corners are moved onto a side of the outline if the distance to this side
+/// is within the rounding errors of single precision.
 std::vector<std::vector<Vec3>> entrance_mesh_polygons(const SurfacePatch& patch, const Polygon& outline);
 
 }  // namespace retrace::geometry

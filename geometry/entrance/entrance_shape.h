@@ -1,6 +1,6 @@
 #pragma once
 
-// Curved entrance faces that are described by a few numbers or by a formula, and the inclination of such a face.
+// Curved entrance faces that are described by a few numbers or by a formula, and the inclination of these faces.
 
 #include <array>
 #include <memory>
@@ -14,8 +14,9 @@
 
 namespace retrace::geometry {
 
-// A shape is a height z(x, y) in its own frame. The origin is the middle of the surface, and the material is below it.
-// Radii of curvature are positive if the centre of curvature is on the side of the material (convex towards the light).
+// Each shape defines a height z(x, y) in its own frame. The origin is the middle of the surface, and the material is
+// below the surface. A radius of curvature is positive if the centre of curvature is on the side of the material, so
+// that the surface is convex towards the light.
 
 struct PlaneEntrance {};
 
@@ -42,7 +43,7 @@ struct FormulaEntrance {
   std::shared_ptr<const Formula> height_mm;  ///< never null
 };
 
-/// Words for the kinds of shapes, in the order of the alternatives of EntranceShape.
+/// Names of the shapes in files, in the order of the alternatives of EntranceShape.
 inline constexpr std::string_view kEntranceKinds[] = {"plane", "cylinder", "sphere", "biconic", "formula"};
 
 using EntranceShape = std::variant<PlaneEntrance, CylinderEntrance, SphereEntrance, BiconicEntrance, FormulaEntrance>;
@@ -55,17 +56,16 @@ FormulaEntrance parse_entrance_formula(const std::string& text, const InputLocat
 Sag height_of(const EntranceShape& shape);
 
 /// Orientation of an entrance face relative to the elements of the part, whose axes are parallel to z. The axis of the
-/// face is the z axis of its own frame. The axis of the face, z and the reference axis of the part are in one vertical
-/// plane. The face is rotated away from z in the direction opposite to `azimuth_deg`, so that light along the reference
-/// axis comes from `azimuth_deg`.
+/// face is the z axis of the face's own frame. This axis, z and the reference axis of the part are in one vertical
+/// plane. The axis of the face is inclined from z in the direction opposite to `azimuth_deg`. Light along the reference
+/// axis then comes from the azimuth `azimuth_deg`.
 struct EntranceInclination {
   double incidence_deg = 0.0;  ///< angle between the reference axis and the axis of the face, 0..60
   double azimuth_deg = 0.0;    ///< azimuth towards which the reference axis leans away from the axis of the face
   double pin_angle_deg = 0.0;  ///< angle between z and the axis of the face, 0..60
 };
 
-/// Returns the rotation that takes the axis of the face from z to its inclined direction. It is a rotation about a
-/// horizontal axis.
+/// Returns the rotation about a horizontal axis that turns the axis of the face from z to its inclined direction.
 Eigen::Matrix3d rotation_of(const EntranceInclination& inclination);
 /// Returns the unit vector along the reference axis, towards the light, in the part frame.
 Vec3 reference_axis_of(const EntranceInclination& inclination);

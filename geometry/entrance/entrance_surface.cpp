@@ -21,8 +21,8 @@ constexpr int kFewestCells = 64;
 constexpr double kSameBend = 1.3;
 // Changes of slope below this value are rounding errors; the surface is then treated as a plane.
 constexpr double kFlat = 1e-9;
-// Smallest cosine of the angle between the normal of a surface and z: the cosine of 89 degrees. Steeper surfaces count
-// as vertical.
+// Minimum cosine of the angle between z and the normal of a surface, equal to cos 89 degrees. Steeper surfaces are
+// regarded as vertical.
 constexpr double kMinUpward = 0.017452406437283512;
 // Distance from a corner at which the local curvature is measured, relative to the size of a grid cell.
 constexpr double kSmall = 1e-3;
@@ -82,9 +82,9 @@ bool same_bend(double a, double b, double size_mm) {
   return std::max(a, b) * size_mm < kFlat || (a <= kSameBend * b && b <= kSameBend * a);
 }
 
-/// Searches for the nearest local maximum of a function over the outline, beginning at a point. The search uses
-/// decreasing steps along the axes, the diagonals and the edges of the outline (R. Hooke, T. A. Jeeves, J. ACM 8
-/// (1961), 212).
+/// Returns the position of a local maximum of a function over the outline, found by a search from a given point. The
+/// search uses decreasing steps along the axes, the diagonals and the edges of the outline (R. Hooke, T. A. Jeeves, J.
+/// ACM 8 (1961), 212).
 template <class Function>
 Vec2 climb(const Function& function, const Polygon& outline, Vec2 from, double step_mm) {
   std::vector<Vec2> directions = {Vec2(1, 0), Vec2(0, 1), Vec2(1, 1).normalized(), Vec2(1, -1).normalized()};
@@ -109,7 +109,7 @@ Vec2 climb(const Function& function, const Polygon& outline, Vec2 from, double s
   return from;
 }
 
-/// Returns the plane perpendicular to the axis of an inclined surface that touches the surface from above.
+/// Returns the plane that touches an inclined surface from above and is perpendicular to the axis of this surface.
 TouchingPlane plane_touching(const EntranceSurface& surface, const Polygon& outline, const std::vector<Vec2>& samples,
                              double step_mm) {
   const Vec3 axis = surface.axis();
@@ -177,9 +177,9 @@ EntranceSurface::SurfaceSample EntranceSurface::at(const Vec2& point_mm) const {
   return {pose_.origin_mm.z() + z.value, is_rotated_ ? Vec2(rotation * slope) : slope};
 }
 
-/// Returns height and slope in the frame of the surface. The slope is computed from central differences where the
-/// gradient is not finite. For example, a formula of the radius r has no derivative at r = 0, although its surface may
-/// be smooth there.
+/// Returns height and slope in the frame of the surface. Where the gradient is not finite, the slope is computed from
+/// central differences. For example, a formula that contains r has no derivative at r = 0, but its surface may be
+/// smooth there.
 jets::Gradient EntranceSurface::gradient_at(const Vec2& p) const {
   const jets::Gradient z = surface_.gradient(p.x(), p.y());
   if (std::isfinite(z.x) && std::isfinite(z.y)) return z;
@@ -190,15 +190,16 @@ jets::Gradient EntranceSurface::gradient_at(const Vec2& p) const {
   return {surface_.height_mm(p.x(), p.y()), slope.x(), slope.y()};
 }
 
-/// Returns a normal of the surface in the part frame. It is not normalised.
+/// Returns a vector along the normal of the surface in the part frame. Its length is not 1.
 /// \param slope slope in the frame of the surface
 Vec3 EntranceSurface::normal_of(const Vec2& slope) const {
   return pose_.part_from_surface * Vec3(-slope.x(), -slope.y(), 1.0);
 }
 
-/// Returns the crossing to which Newton's method converges from a height. Returns nothing if it does not converge, or
-/// if the normal of the surface does not point upwards at the crossing.
+/// Returns the intersection of a vertical line with the surface, found by Newton's method. Returns nothing if the
+/// method does not converge, or if the normal of the surface at the intersection does not point upwards.
 /// \param across_mm position of the vertical line relative to the origin of the surface
+/// \param z_mm height at which the method starts
 std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Vec2& across_mm, double z_mm) const {
   constexpr int kMaxSteps = 40;
   constexpr double kSmallStep = 1e-12;  // relative to the distance from the origin
@@ -209,7 +210,8 @@ std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Ve
     const Vec3 local = pose_.part_from_surface.transpose() * Vec3(across_mm.x(), across_mm.y(), z_mm);
     const jets::Gradient height = gradient_at(local.head<2>());
     const Vec2 slope(height.x, height.y);
-    // The gap between line and surface along the axis of the surface changes by normal.z() per mm along the line.
+    // A step of 1 mm along the line changes the distance between line and surface by normal.z(), measured along the
+    // axis of the surface.
     const Vec3 normal = normal_of(slope);
     const double step = (height.value - local.z()) / normal.z();
     if (!std::isfinite(step)) return std::nullopt;
@@ -224,8 +226,8 @@ std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Ve
   return std::nullopt;
 }
 
-/// Returns the crossing that is connected to the origin of the surface. The line on which the crossing is searched is
-/// moved in small steps from the origin to `across_mm`.
+/// Returns the intersection at `across_mm` that is connected to the origin of the surface. The vertical line is moved
+/// from the origin to `across_mm` in small steps, and each intersection is the start of the next search.
 std::optional<EntranceSurface::Crossing> EntranceSurface::followed_crossing(const Vec2& across_mm) const {
   constexpr int kSteps = 64;
   const Vec3 from = pose_.part_from_surface * Vec3(0.0, 0.0, surface_.height_mm(0.0, 0.0));
@@ -268,8 +270,9 @@ bool EntranceSurface::faces_up_at(const Vec2& position_mm) const {
 
 namespace {
 
-/// Returns the first of some points of the plan between `p` and `q` at which the surface is vertical or folds, or
-/// nothing. Between two points of a surface that folds, there is a point whose normal does not point upwards.
+/// Checks a few points of the surface between those above `p` and `q`. Returns the plan position of the first point at
+/// which the surface is vertical or folds, or nothing. If a surface folds between two points, its normal does not point
+/// upwards at some point between them.
 std::optional<Vec2> fold_between(const EntranceSurface& surface, const Vec2& p, const Vec2& q) {
   constexpr int kPointsBetween = 8;
   const std::optional<Vec2> a = surface.surface_position(p);
@@ -304,7 +307,7 @@ void check_folds(const EntranceSurface& surface, const Polygon& outline) {
 
 namespace {
 
-/// Returns the corners of a triangle and points between them, which are at most `spacing_mm` apart.
+/// Returns the corners of a triangle and further points within it, at distances of at most `spacing_mm`.
 std::vector<Vec3> points_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double spacing_mm) {
   const double longest_mm = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   const int steps = std::max(1, static_cast<int>(std::ceil(longest_mm / spacing_mm)));
@@ -314,7 +317,7 @@ std::vector<Vec3> points_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c
   return points;
 }
 
-/// Returns points of a facet in the frame of its patch.
+/// Returns the corners of a facet and further points within it, in the frame of the facet's patch.
 std::vector<Vec3> points_of_facet(const SurfacePatch& patch, const PatchFacet& facet, double spacing_mm) {
   const auto corner = [&](std::uint32_t k) -> const Vec3& {
     return patch.vertices[patch.corners[facet.first_corner + k]];

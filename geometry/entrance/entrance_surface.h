@@ -17,19 +17,19 @@
 
 namespace retrace::geometry {
 
-/// Position and orientation of a surface: a point p of the frame of the surface is at part_from_surface * p + origin_mm
-/// in the part frame.
+/// Position and orientation of a surface. A point p in the frame of the surface has the position part_from_surface * p
+/// + origin_mm in the part frame.
 struct SurfacePose {
   Vec3 origin_mm = Vec3::Zero();
   Eigen::Matrix3d part_from_surface = Eigen::Matrix3d::Identity();  ///< rotation
 };
 
 /// Curved face through which light enters a part, in the part frame. It is a freeform surface at a given position and
-/// orientation. The material is below it.
+/// orientation, with the material below the surface.
 ///
-/// An inclined surface is evaluated along the line through the point parallel to z. The intersection with the surface
-/// is found by Newton's method, beginning at the tangent plane of the surface's origin. The slope is that of the
-/// rotated normal, so it is as exact as that of the freeform surface.
+/// The height of an inclined surface above a point is found by intersecting the surface with the line through this
+/// point parallel to z. Newton's method finds the intersection, starting on the tangent plane at the surface's origin.
+/// The slope follows from the rotated normal and is therefore as exact as the slope of the freeform surface.
 class EntranceSurface {
  public:
   struct SurfaceSample {
@@ -50,10 +50,10 @@ class EntranceSurface {
   /// Returns the unit vector along the axis of the surface. It is z unless the surface is inclined.
   Vec3 axis() const { return pose_.part_from_surface.col(2); }
   bool is_inclined() const { return is_inclined_; }
-  /// Returns the point of the surface above a point of the plan, in the frame of the surface (x and y). Returns nothing
-  /// where there is no surface.
+  /// Returns the point of the surface above a plan position, as x and y in the frame of the surface. Returns nothing if
+  /// there is no such point.
   std::optional<Vec2> surface_position(const Vec2& point_mm) const;
-  /// Returns true if the normal of the surface at a point is less than 89 degrees from z.
+  /// Returns true if the angle between z and the normal of the surface at a point is less than 89 degrees.
   /// \param position_mm point in the frame of the surface, as returned by surface_position()
   bool faces_up_at(const Vec2& position_mm) const;
 
@@ -61,7 +61,7 @@ class EntranceSurface {
   /// Intersection of the surface with a line parallel to z.
   struct Crossing {
     double z_mm = 0.0;                ///< height above the origin of the surface, in the part frame
-    Vec2 position_mm = Vec2::Zero();  ///< in the frame of the surface
+    Vec2 position_mm = Vec2::Zero();  ///< x and y in the frame of the surface
     Vec2 local_slope = Vec2::Zero();  ///< slope in the frame of the surface
   };
 
@@ -104,12 +104,12 @@ struct EntranceRange {
   Vec2 lowest_at_mm = Vec2::Zero();
   Vec2 highest_at_mm = Vec2::Zero();
   double steepest_slope = 0.0;  ///< maximum slope of all samples
-  /// Plane perpendicular to the axis of an inclined surface that touches the surface from above. It is empty for other
-  /// surfaces, for which the horizontal plane at `highest_mm` has this role.
+  /// Plane that touches an inclined surface from above and is perpendicular to the axis of this surface. For other
+  /// surfaces it is empty, and the horizontal plane at `highest_mm` is used instead.
   std::optional<TouchingPlane> inclined_plane = {};
 
-  /// Returns the height of the plane that touches the surface from above. The incident beam crosses this plane inside
-  /// the outline of the part.
+  /// Returns the height at a point of the plane that touches the surface from above. The incident beam crosses this
+  /// plane inside the outline of the part.
   double beam_height_mm(const Vec2& point_mm) const {
     return inclined_plane ? inclined_plane->at(point_mm) : highest_mm;
   }
@@ -120,21 +120,22 @@ struct EntranceRange {
 /// \throw InputError if the surface has no finite height somewhere over the outline
 EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
 
-/// Point at which the back surface of a part is above its entrance surface, or touches it.
+/// Point at which the back surface of a part touches the entrance surface or is above it.
 struct EntranceContact {
   Vec2 position_mm = Vec2::Zero();
   double back_mm = 0.0;      ///< height of the back surface
   double entrance_mm = 0.0;  ///< height of the entrance surface
 };
 
-/// Searches for points at which the back of a finite part is not below an exact entrance surface. The vertices of the
-/// back and points between them are checked, at distances of at most 1/128 of the part's size. Returns nothing if there
-/// is no such point. Walls along the border of the part are not checked.
+/// Searches for a point at which the back of a finite part is not below an exact entrance surface. Returns nothing if
+/// none is found. The search covers the vertices of the back and points between them, at distances of at most 1/128 of
+/// the part's size. Walls along the border of the part are not included.
 std::optional<EntranceContact> find_contact(const EntranceSurface& surface, const Part& part);
 
-/// Checks that an inclined surface does not fold over the outline: it must have exactly one point above each point of
-/// the outline, and its normal must be less than 89 degrees from z. The surface is checked at samples and between them.
-/// \throw InputError with the position of the fold, with a text that begins with "must"
+/// Checks that an inclined surface does not fold over the outline of a part. Above each point of the outline, the
+/// surface must have exactly one point, and the angle between its normal and z must be less than 89 degrees. The
+/// surface is checked at sample points and between them.
+/// \throw InputError with the position of the fold; its message begins with "must"
 void check_folds(const EntranceSurface& surface, const Polygon& outline);
 
 /// Returns the number of cells along the longer side of the outline's bounding box that resolves all features of a

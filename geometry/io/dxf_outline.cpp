@@ -21,9 +21,9 @@ namespace {
 constexpr double kJoinedFraction = 1e-5;
 constexpr std::size_t kMaxSides = 20'000;
 constexpr double kMaxCoordinate = 1e9;
-/// Layer of entities without a layer.
+/// Name of the layer that contains all entities for which the file specifies no layer.
 constexpr std::string_view kDefaultLayer = "0";
-/// Length in mm of each unit of $INSUNITS, in the order of their numbers. 0: a unit that is not allowed.
+/// Length in mm of each unit of length, indexed by the value of $INSUNITS. 0: the unit is not allowed.
 constexpr std::array<double, 15> kUnitLengthsMm = {1.0,     25.4,   304.8, 0.0,  1.0,  10.0, 1000.0, 0.0,
                                                    2.54e-5, 0.0254, 914.4, 1e-7, 1e-6, 1e-3, 100.0};
 
@@ -34,7 +34,7 @@ struct Group {
   int line = 0;  ///< line of the group code
 };
 
-/// Side of a loop and the line of the file at which its entity begins.
+/// Side of a loop, and the line of the file at which the entity that describes this side begins.
 struct EntitySide {
   OutlineSide side;
   int line = 0;
@@ -129,7 +129,7 @@ class DxfReader {
     return group;
   }
 
-  /// Values of an entity, by their group codes. If a code occurs several times, the last value is stored.
+  /// Values of an entity, indexed by group code. If a code occurs several times, the last value is stored.
   struct Entity {
     std::array<double, 60> values{};
     std::array<bool, 60> is_given{};
@@ -139,7 +139,8 @@ class DxfReader {
     std::vector<double> bulges;
   };
 
-  /// Returns true if the entity whose groups follow is on the selected layer. The position in the text is not changed.
+  /// Returns true if the entity whose groups are next in the text is on the selected layer. Does not read on in the
+  /// text.
   bool is_next_selected() {
     if (selection_.layer.empty()) return true;
     const std::string_view remainder = remainder_;
@@ -210,7 +211,7 @@ class DxfReader {
     }
   }
 
-  /// Adds an arc as two halves, because the bulge of an arc grows without limit as the arc approaches a full circle.
+  /// Adds an arc as two half arcs, because the bulge of a single arc becomes infinite for a full circle.
   void add_arc(const Vec2& centre, double radius, double from_deg, double to_deg, int line) {
     double sweep_deg = std::fmod(to_deg - from_deg, 360.0);
     if (sweep_deg <= 0.0) sweep_deg += 360.0;
@@ -254,14 +255,14 @@ class DxfReader {
     }
   }
 
-  /// Returns the diagonal of the bounding box of all ends.
+  /// Returns the diagonal of the bounding box of the end points of all sides.
   double size_mm() const {
     std::vector<Vec2> ends;
     for (const EntitySide& entity : sides_) ends.insert(ends.end(), {entity.side.from_mm, entity.side.to_mm});
     return bounding_box(ends).size().norm();
   }
 
-  /// Returns the closed loops that the sides form.
+  /// Joins the sides and returns the closed loops that they form.
   std::vector<OutlineLoop> joined() {
     const double near_mm = kJoinedFraction * size_mm();
     std::erase_if(sides_, [&](const EntitySide& entity) { return entity.side.chord_mm() <= near_mm; });
@@ -287,8 +288,8 @@ class DxfReader {
     return loops;
   }
 
-  /// Returns the number of the unused side that begins or ends at a point, and true if it ends there.
-  /// \param line line of the file for the message if there is no such side
+  /// Returns the index of the unused side that begins or ends at a point, and true if this side ends there.
+  /// \param line line of the file that the error message names if there is no such side
   std::pair<std::size_t, bool> successor(const Vec2& end, const std::vector<bool>& is_used, double near_mm,
                                          int line) const {
     std::optional<std::pair<std::size_t, bool>> found;

@@ -17,15 +17,15 @@ inline constexpr std::size_t kMaxDxfBytes = 16U << 20;
 /// Selection of the entities of a DXF file, and the unit of their coordinates.
 struct DxfSelection {
   std::string layer;            ///< layer whose entities form the outline; empty: all layers
-  std::optional<double> scale;  ///< length of a unit in mm; empty: the unit of the file ($INSUNITS), or 1 without one
+  std::optional<double> scale;  ///< length of one unit in mm; empty: from $INSUNITS of the file, or else 1
 };
 
-/// Joins the entities LINE, ARC, CIRCLE and LWPOLYLINE of an ASCII DXF file to closed loops. Ends of entities are
-/// joined if their distance is at most 1e-5 of the size of the outline.
-/// \param name name of the file for messages
+/// Reads the outline from an ASCII DXF file. The entities LINE, ARC, CIRCLE and LWPOLYLINE are joined to closed loops.
+/// Ends of entities are joined if their distance is at most 1e-5 of the size of the outline.
+/// \param name name of the file in error messages
 /// \return the loops, in mm, in the order of their first entities
-/// \throw InputError if the text is not an ASCII DXF file, if it has other entities, or if the entities do not form
-///     closed loops. It contains the line of the file.
+/// \throw InputError if the text is not an ASCII DXF file, if it contains other entities, or if the entities do not
+///     form closed loops. The message names the line of the file.
 std::vector<OutlineLoop> parse_dxf_outline(std::string_view text, const std::string& name,
                                            const DxfSelection& selection);
 

@@ -16,7 +16,7 @@ using namespace schema;
 
 /// Words of the key `kind`, in the order of the alternatives of SubstrateShape.
 constexpr Words kKinds = {"plane", "cylinder", "sphere", "formula"};
-/// Kinds of substrates of designs. Jobs have no entrance surface, and therefore only the kinds in `kKinds`.
+/// Kinds of substrates in designs. Jobs allow only the kinds in `kKinds`, because they have no entrance surface.
 constexpr Words kKindsOfDesign = {"plane", "cylinder", "sphere", "formula", "offset"};
 constexpr Words kAxes = {"x", "y"};
 constexpr Words kElementAxesWords = {"normal", "parallel"};
@@ -106,7 +106,8 @@ constexpr Row kRows[] = {
                             {nullptr, set_by<set_parallel>},
                             kOfPins})};
 
-/// Index of the row of `element_axes` for elements other than pins.
+/// Index of the row of `element_axes` for elements other than pins. In designs, this row has the condition
+/// kOfNoPinsOnSurface.
 constexpr std::size_t kAxesRow = std::size(kRows) - 2;
 constexpr Row kKindRowOfDesign = {
     "kind", Word{kKindsOfDesign}, kRequired,
@@ -122,7 +123,8 @@ constexpr Row kWallRow = {
     access_in<&Substrate::shape, &OffsetSubstrate::wall_mm>,
     kOffsetOnly};
 
-/// Returns a row of designs. They have the rows of jobs, with one more kind of substrate.
+/// Returns a row of the table in designs. It differs from the row of jobs for `kind`, which has one more value, and for
+/// `element_axes`.
 constexpr Row row_of_design(std::size_t k) {
   if (k == 0) return kKindRowOfDesign;
   return k == kAxesRow ? where(kRows[k], kOfNoPinsOnSurface) : kRows[k];

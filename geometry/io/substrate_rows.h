@@ -10,11 +10,11 @@
 
 namespace retrace::geometry {
 
-/// Returns the keys of `[substrate]` in jobs, as rows for an object of the type Substrate. The last row is used only
-/// for pins (cube corners at the ends of pins).
+/// Returns the keys of `[substrate]` in jobs, as rows for an object of the type Substrate. The last row applies only to
+/// pins (cube corners at the ends of pins).
 std::span<const schema::Row> substrate_rows();
 
-/// Returns the keys of `[substrate]` in designs. They include those of substrates below an entrance surface.
+/// Returns the keys of `[substrate]` in designs. Designs also allow substrates below an entrance surface.
 std::span<const schema::Row> design_substrate_rows();
 
 /// Returns the key that determines the shape of a substrate, for error messages about the shape.

@@ -16,8 +16,8 @@ namespace {
 using VertexRing = std::vector<std::uint32_t>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A corner counts as convex if the border turns right by at most an angle with this sine, because rounding errors may
-/// cause such angles.
+/// Sine of the maximum angle by which the border may turn right at a corner that is still regarded as convex. Rounding
+/// errors can cause such small angles.
 constexpr double kConvex = 1e-13;
 
 /// Returns twice the area of a triangle. It is positive if the corners run counter-clockwise.
@@ -67,8 +67,8 @@ class Triangulation {
     }
   }
 
-  /// Returns the position in the ring of a corner that is visible from the rightmost corner of a hole. It is found with
-  /// a ray from this corner towards +x.
+  /// Returns the position in the ring of a corner that is visible from the rightmost corner of a hole. A ray from the
+  /// rightmost corner towards +x is used to find the visible corner.
   std::size_t position_visible_from(std::uint32_t hole) const {
     const Vec2& m = vertices_[hole];
     double nearest = INFINITY;
@@ -77,7 +77,8 @@ class Triangulation {
       const std::size_t next = (k + 1) % ring_.size();
       const Vec2& a = vertices_[ring_[k]];
       const Vec2& b = vertices_[ring_[next]];
-      // The ray comes from the left and meets sides that run upwards, because the region is on the left of each side.
+      // The ray meets only sides that run upwards, because it comes from inside the region and the region is to the
+      // left of each side.
       if (!(a.y() <= m.y() && b.y() >= m.y() && a.y() < b.y())) continue;
       const double x = a.x() + (b.x() - a.x()) * ((m.y() - a.y()) / (b.y() - a.y()));
       if (x < m.x() || x >= nearest) continue;
@@ -154,7 +155,7 @@ class Triangulation {
     const Vec2& c = vertices_[ring_[(k + 1) % n]];
     return std::ranges::none_of(reflex, [&](std::uint32_t v) {
       const Vec2& p = vertices_[v];
-      // The ends of a bridge occur two times in the ring, possibly as reflex corners.
+      // The end points of a bridge occur twice in the ring and may be reflex corners.
       return p != a && p != b && p != c && in_triangle(p, a, b, c);
     });
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Divides regions of the plane into convex polygons. Regions need not be convex and may have holes.
+// Divides regions of the plane into convex polygons. The regions may be concave and may have holes.
 
 #include <vector>
 

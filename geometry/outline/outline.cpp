@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum distance between two points that count as one point, as a fraction of the size of the outline.
+/// Maximum distance between two points that are regarded as one point, as a fraction of the outline's size.
 constexpr double kNearPointFraction = 1e-9;
 /// Maximum central angle of an arc that is replaced by one side of a polygon, in radians.
 constexpr double kMaxStepRad = std::numbers::pi / 4.0;
@@ -30,14 +30,15 @@ double minus_sine(double x) {
          (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0 * (1.0 - x2 / 156.0)))));
 }
 
-/// Chain of sides that replaces an arc of radius 1. Its first and last corner are the ends of the arc. The other
-/// corners have the distance `radius` from the centre.
+/// Chain of polygon sides that replaces an arc of radius 1. Its first and last corners are the ends of the arc. All
+/// other corners are at the distance `radius` from the centre of the arc.
 struct ArcPolygon {
   int sides = 1;
   double radius = 1.0;
 };
 
-/// Returns the distance of the inner corners from the centre for which polygon and sector have equal areas.
+/// Returns the distance of the inner corners from the centre of the arc for which the polygon and the sector have equal
+/// areas.
 double radius_of_inner_corners(double sweep_rad, int sides) {
   const double step_rad = sweep_rad / sides;
   const double ratio = sweep_rad / std::sin(step_rad);  // about `sides`
@@ -57,7 +58,7 @@ double deviation(double sweep_rad, const ArcPolygon& polygon) {
   return std::max({outside, at_end, polygon.sides > 2 ? inside : 0.0});
 }
 
-/// Returns the polygon of an arc with about the minimum number of sides.
+/// Returns a polygon that replaces an arc with nearly the minimum number of sides.
 /// \param tolerance maximum deviation, relative to the radius
 ArcPolygon polygon_of_arc(double sweep_rad, double tolerance) {
   // For small steps, the end sides deviate by about step^2 / 8.
@@ -115,7 +116,7 @@ std::optional<Vec2> self_contact(const PolygonLoop& loop, double near_mm) {
   return std::nullopt;
 }
 
-/// Returns a point near which the sides of two loops meet.
+/// Returns a point near which the sides of two loops meet, or nothing if they do not meet.
 std::optional<Vec2> contact(const PolygonLoop& one, const PolygonLoop& other, double near_mm) {
   for (std::size_t i = 0; i < one.size(); ++i)
     for (std::size_t j = 0; j < other.size(); ++j)
@@ -127,7 +128,7 @@ std::string at_text(const Vec2& p) {
   return fmt::format("x = {:.6g}, y = {:.6g} mm", p.x(), p.y());
 }
 
-/// Returns a fault if a side of a loop does not begin where the previous side ends.
+/// Returns a fault if a side of a loop does not begin at the end of the previous side. Otherwise, returns nothing.
 std::optional<OutlineFault> opening_of(const OutlineLoop& loop, double near_mm) {
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec2& next = loop[(k + 1) % loop.size()].from_mm;
@@ -156,7 +157,7 @@ OffsetCurve offset_curve(const OutlineSide& side, double by_mm) {
   return {false, side.centre_mm(), Vec2::UnitX(), side.radius_mm() - std::copysign(1.0, side.bulge) * by_mm};
 }
 
-/// Returns the points of intersection of two curves. Touching curves may have two equal points.
+/// Returns the intersections of two curves. If the curves only touch, the same point may be returned twice.
 std::vector<Vec2> intersections(const OffsetCurve& a, const OffsetCurve& b) {
   if (a.is_line && b.is_line) {
     const double sine = plane::cross(a.along, b.along);
@@ -350,7 +351,7 @@ OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<doub
     result.push_back({start ? start->to_mm : loop[k].from_mm, end ? end->from_mm : loop[k].to_mm,
                       loop[k].is_arc() ? std::tan(0.25 * (to - from) * loop[k].sweep_rad()) : 0.0});
   }
-  // If two fillets fill a side completely, they meet at one point. Rounding errors are removed.
+  // If two fillets use up the whole side between them, they meet at one point. This removes rounding errors there.
   for (std::size_t k = 0; k < result.size(); ++k) result[k].to_mm = result[(k + 1) % result.size()].from_mm;
   return result;
 }

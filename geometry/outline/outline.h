@@ -16,7 +16,7 @@ namespace retrace::geometry {
 struct OutlineSide {
   Vec2 from_mm = Vec2::Zero();
   Vec2 to_mm = Vec2::Zero();
-  /// Tangent of a quarter of the arc's central angle, as in DXF files. 0: a straight line. For a positive value, the
+  /// Tangent of a quarter of the arc's central angle, as in DXF files. 0: the side is straight. If it is positive, the
   /// arc runs counter-clockwise from `from_mm` to `to_mm` and is on the right of its chord.
   double bulge = 0.0;
 
@@ -33,7 +33,7 @@ struct OutlineSide {
   /// Returns the unit tangent at a point of the side, in the direction from `from_mm` to `to_mm`.
   /// \param fraction position along the side, from 0 at `from_mm` to 1 at `to_mm`
   Vec2 tangent_at(double fraction) const;
-  /// Returns the side in the opposite direction.
+  /// Returns the side with its ends exchanged.
   OutlineSide reversed() const { return {to_mm, from_mm, -bulge}; }
 };
 
@@ -61,7 +61,7 @@ OutlineLoop moved(OutlineLoop loop, const Vec2& by);
 /// Returns a circle as a loop of two half circles, counter-clockwise.
 OutlineLoop circle(const Vec2& centre_mm, double radius_mm);
 
-/// Returns true if a loop is a full circle of two half circles.
+/// Returns true if a loop consists of two half circles that form a full circle.
 bool is_circle(const OutlineLoop& loop);
 
 /// Corner whose radius is too large for its sides.
@@ -74,8 +74,9 @@ struct CornerFault {
 OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<double>& radius_mm,
                                  std::optional<CornerFault>& fault);
 
-/// Approximates a loop by a polygon that encloses the same area. All corners of the loop are corners of the polygon.
-/// On an arc, the other corners are slightly outside, and the midpoints of the polygon's sides are slightly inside.
+/// Approximates a loop by a polygon that encloses the same area. Every corner of the loop is a corner of the polygon.
+/// Along an arc, the additional corners are slightly outside of the arc, and the midpoints of the polygon's sides are
+/// slightly inside.
 /// \param tolerance_mm maximum distance between an arc and the polygon; > 0
 PolygonLoop equal_area_polygon(const OutlineLoop& loop, double tolerance_mm);
 

@@ -34,7 +34,7 @@ double min_distance(const PolygonLoop& points, const PolygonLoop& loop) {
   return least;
 }
 
-/// Line of a side after the side was moved to its left.
+/// Line through a side that has been moved to the left.
 struct MovedSide {
   Vec2 point_mm;
   Vec2 along;  ///< unit vector
@@ -77,7 +77,7 @@ PolygonLoop moved_inward(const PolygonLoop& loop, double by_mm) {
   return {};
 }
 
-/// Returns the points of a convex polygon that are at least `by_mm` away from its sides.
+/// Returns the region of a convex polygon whose points are at least `by_mm` away from all sides.
 Polygon convex_inside(const Polygon& polygon, double by_mm, double tolerance_mm) {
   Polygon inside = polygon;
   for (std::size_t k = 0; k < polygon.size() && !inside.empty(); ++k) {
@@ -146,8 +146,8 @@ double perimeter(const Polygon& polygon) {
   return sum;
 }
 
-/// Returns the intersections of a polygon with the convex polygons of a region. Unlike clip(), they stay divided if the
-/// polygon is completely inside the region.
+/// Returns the intersections of a polygon with the convex polygons of a region. Unlike clip(), this function also
+/// divides a polygon that is completely inside the region.
 std::vector<Polygon> portions(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {
   const Rectangle box = bounding_box(polygon);
   std::vector<Polygon> inside;
@@ -168,7 +168,7 @@ bool cover(const std::vector<Polygon>& portions, const Polygon& polygon, double 
   return area(polygon) - sum <= tolerance_mm * perimeter(polygon);
 }
 
-/// Returns the area of a convex polygon at coordinates below a bound.
+/// Returns the area of the portion of a convex polygon in which the coordinate along `axis` is below a bound.
 double area_below(const Polygon& polygon, Eigen::Index axis, double bound) {
   Polygon below;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -242,7 +242,7 @@ std::optional<std::array<Vec2, 2>> clip_segment(const Vec2& from, const Vec2& to
   double last = 1.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 along = polygon[(k + 1) % polygon.size()] - polygon[k];
-    // The cross products are positive on the inner side.
+    // The cross products are positive for points on the inner side of the polygon's edge.
     const double at_from = plane::cross(along, from - polygon[k]);
     const double at_to = plane::cross(along, to - polygon[k]);
     if (at_from < 0.0 && at_to < 0.0) return std::nullopt;
@@ -265,7 +265,8 @@ double coordinate_of_area_fraction(const PlanRegion& plan, const Rectangle& room
   }
   double low = room.lower[axis];
   double high = room.upper[axis];
-  // Bisection until the bounds are neighbouring numbers. The area is a continuous function of the coordinate.
+  // Bisection until the two bounds are neighbouring floating-point numbers. It converges because the area is a
+  // continuous function of the coordinate.
   for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high)) {
     double below_mm2 = 0.0;
     for (const Polygon& piece : pieces) below_mm2 += area_below(piece, axis, middle);

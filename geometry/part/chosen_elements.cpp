@@ -37,8 +37,8 @@ Vec2 middle_in_plan(const SurfacePatch& patch, const PatchCell& cell) {
 }
 
 /// Returns a point next to a wall, projected to (x, y): the wall's centroid, moved by `by_mm` along the outward normal.
-/// If the wall separates two cells, this point is in the shallower cell. With a negative `by_mm`, it is in the deeper
-/// cell.
+/// If the wall separates two cells, a positive `by_mm` gives a point in the shallower cell, and a negative `by_mm` a
+/// point in the deeper cell.
 Vec2 beyond_wall(const SurfacePatch& patch, const PatchFacet& wall, double by_mm) {
   const std::span<const std::uint32_t> ring(&patch.corners[wall.first_corner], wall.corner_count);
   return (ring_centroid(patch.vertices, ring) + by_mm * wall.normal).head<2>();

@@ -56,7 +56,7 @@ class ChosenElements {
     Vec2 centre_mm = Vec2::Zero();
   };
   LatticeElement element_at(const Vec2& position_mm) const;
-  /// Chooses the facets of a side of a notch or a hole together with the element or land next to it.
+  /// Chooses the facets on a side of a notch or hole if the element or land next to this side is chosen.
   /// \param first index in `facets_` of the first facet of the patch
   void choose_open_side(const SurfacePatch& patch, const Vec2& offset_mm, const PatchCell& cell, std::size_t first);
   bool is_chosen(const LatticeElement& element, const Vec2& position_mm) const;

@@ -19,15 +19,17 @@ struct BoundaryMesh {
   std::vector<FacetRole> roles;
 };
 
-/// Adds the triangles between the centroid of a closed polygon of vertices and its edges.
+/// Adds the triangles that join the edges of a closed polygon of vertices to its centroid.
 void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRole role);
 
-/// Returns the directed edges for which no triangle has the opposite edge, in the order of the triangles.
+/// Returns the directed edges of triangles for which no triangle has the same edge in the opposite direction. They are
+/// in the order of the triangles.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> open_edges(const BoundaryMesh& mesh);
 
-/// Returns the back surface and the border walls of a finite part. The sides and the entrance face are missing.
-/// \pre as for closed_boundary()
-/// \throw std::logic_error as closed_boundary()
+/// Returns the back surface and the border walls of a finite part. The returned mesh is open, because the sides and the
+/// entrance face are missing.
+/// \pre the preconditions of closed_boundary()
+/// \throw std::logic_error under the same conditions as closed_boundary()
 BoundaryMesh back_boundary(const Part& part);
 
 /// Returns the closed boundary of a finite part: back surface, border walls, sides of the plate and entrance face.

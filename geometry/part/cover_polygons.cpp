@@ -8,11 +8,13 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum distance between a vertex and the side of a polygon on which it is, as a fraction of the size of an element.
+/// Maximum distance between a side of a polygon and a vertex that is regarded as on this side, as a fraction of an
+/// element's size.
 constexpr double kOnSideFraction = 1e-8;
 
-/// Returns the border of a convex polygon as vertices, counter-clockwise. Vertices on its sides are included.
-/// \param tolerance_mm maximum distance between a vertex and the side on which it is
+/// Returns the vertices along the border of a convex polygon, counter-clockwise: its corners and all vertices on its
+/// sides.
+/// \param tolerance_mm maximum distance between a side and a vertex that is regarded as on this side
 std::vector<std::uint32_t> border_vertices(const Polygon& polygon, const std::vector<PlacedVertex>& vertices,
                                            double tolerance_mm) {
   std::vector<std::uint32_t> ring;

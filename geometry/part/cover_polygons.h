@@ -1,7 +1,7 @@
 #pragma once
 
-// Covers a plane region of a mesh with triangles. All vertices on the border of the region are used, so that the mesh
-// is closed.
+// Covers a plane region of a mesh with triangles. The triangles use all vertices of the mesh on the border of the
+// region, so that no gaps remain.
 
 #include <cstdint>
 #include <utility>

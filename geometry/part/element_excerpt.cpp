@@ -8,11 +8,12 @@
 namespace retrace::geometry {
 namespace {
 
-// Two corners of an element count as one point if their distance is below this fraction of the element's size.
+// Maximum distance between two corners of an element that are regarded as one point, as a fraction of the element's
+// size.
 constexpr double kSameCorner = 1e-9;
 // Minimum distance between facets of an excerpt and its entrance face, as a fraction of the element's size.
 constexpr double kMinFacetRoom = 1e-6;
-// Margin around all facets of an excerpt, as a fraction of the element's size. It keeps the outline off the facets.
+// Distance between the outline of an excerpt and all its facets, as a fraction of the element's size.
 constexpr double kExcerptMargin = 0.25;
 
 Vec3 shift_of(const Placement& placement) {
@@ -23,7 +24,7 @@ Vec3 corner_of(const SurfacePatch& patch, const PatchFacet& facet, std::uint32_t
   return patch.vertices[patch.corners[facet.first_corner + k]];
 }
 
-/// A corner of an element and the number of retro facets that have it.
+/// Corner of an element and the number of retro facets that share this corner.
 struct CountedCorner {
   Vec3 at_mm;
   int facets = 0;
@@ -38,7 +39,7 @@ void count_corner(std::vector<CountedCorner>& corners, const Vec3& at_mm, double
   corners.push_back({at_mm, is_retro ? 1 : 0});
 }
 
-/// Sets the points of an element from its facets. Returns false if it has no retro facet.
+/// Sets apex, corners and bounding box of an element from its facets. Returns false if it has no retro facet.
 bool find_points(const Part& part, PartElement& element) {
   const Placement& placement = part.placements[element.placement];
   const SurfacePatch& patch = part.patches[placement.patch];
@@ -74,8 +75,8 @@ class ExcerptBuilder {
   ExcerptBuilder(const Part& part, const Eigen::Isometry3d& frame_from_part, double thickness_mm)
       : part_(part), frame_from_part_(frame_from_part), thickness_mm_(thickness_mm) {}
 
-  /// Adds the cells of an element, or a single cell that belongs to no element. They are omitted if they reach the
-  /// entrance face.
+  /// Adds the cells of an element, or a single cell that belongs to no element. Adds nothing if one of their facets
+  /// reaches the entrance face.
   void add(const Placement& placement, const std::vector<std::uint32_t>& cells, bool is_element) {
     const SurfacePatch& patch = part_.patches[placement.patch];
     const Vec3 shift = shift_of(placement);
@@ -96,7 +97,7 @@ class ExcerptBuilder {
     }
   }
 
-  /// Adds a rectangular face of a side of the real part.
+  /// Adds a rectangular face that belongs to a side of the original part.
   /// \param corners_mm corners in the part frame, counter-clockwise as seen from outside
   void add_side(const std::vector<Vec3>& corners_mm, const Vec3& normal, FacetRole role) {
     begin_cell(static_cast<std::uint32_t>(own().cells.size()), false);
@@ -183,8 +184,8 @@ class ExcerptBuilder {
   ElementExcerpt excerpt_;
 };
 
-/// Range of a segment from `a` to `b`, in fractions of its length, that is within a rectangle. It is empty if the first
-/// value is not below the second.
+/// Returns the range of a segment from `a` to `b` that is within a rectangle, as two fractions of the segment's length.
+/// The range is empty if the first fraction is not below the second one.
 std::pair<double, double> range_within(const Vec2& a, const Vec2& b, const Rectangle& box) {
   double from = 0.0;
   double to = 1.0;
@@ -202,8 +203,8 @@ std::pair<double, double> range_within(const Vec2& a, const Vec2& b, const Recta
   return {from, to};
 }
 
-/// Adds the sides of the real part within a rectangle. A side is a vertical wall from below the back up to the entrance
-/// face. Its portion below z = 0 is a border wall.
+/// Adds the sides of the original part that are within a rectangle. A side is a vertical wall that extends from below
+/// the back up to the entrance face. The portion of a side below z = 0 is a border wall.
 void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& frame_from_part, double thickness_mm,
                ExcerptBuilder& builder) {
   const Vec3 up = frame_from_part.linear() * Vec3::UnitZ();
@@ -231,7 +232,7 @@ void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& 
   }
 }
 
-/// Returns true if the boxes of a cell and of an element, in plan, are at most `reach_mm` apart along both axes.
+/// Returns true if, in plan, the bounding boxes of a cell and an element are at most `reach_mm` apart along both axes.
 bool is_within_reach(const Vec3& lower, const Vec3& upper, const PartElement& element, double reach_mm) {
   return ((lower - element.upper_mm).head<2>().array() <= reach_mm).all() &&
          ((element.lower_mm - upper).head<2>().array() <= reach_mm).all();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Elements of a part, and the surroundings of one element as a part of their own, in a rotated frame.
+// Finds the elements of a part, and cuts out one element with its surroundings as a separate part in a rotated frame.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace retrace::geometry {
 struct PartElement {
   std::uint32_t placement = 0;
   std::vector<std::uint32_t> cells;  ///< indices into SurfacePatch::cells
-  /// Point of the part frame where the largest number of retro facets meet: the apex of a cube corner, the middle of
-  /// the roof edge of a prism. If there are several such points, it is their mean.
+  /// Point where the largest number of retro facets meet, in the part frame. This is the apex of a cube corner or the
+  /// middle of the roof edge of a prism. If several points have the largest number, it is their mean.
   Vec3 apex_mm = Vec3::Zero();
   Vec3 lower_mm = Vec3::Zero();  ///< bounding box in the part frame
   Vec3 upper_mm = Vec3::Zero();
@@ -25,19 +25,20 @@ struct PartElement {
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
 std::vector<PartElement> part_elements(const Part& part);
 
-/// An element and its surroundings, in a frame of their own.
+/// Element with its surroundings as a separate part. Coordinates are in the frame of the excerpt.
 struct ElementExcerpt {
-  /// Facets of the element and of its surroundings. The entrance face is the plane z = `thickness_mm` of the frame. The
-  /// real part continues beyond `outline`, which has no physical meaning. `entrance_pieces` is empty.
+  /// Facets of the element and of its surroundings. The entrance face is the plane z = `thickness_mm`. The original
+  /// part continues beyond `outline`, which is only the limit of the excerpt. `entrance_pieces` is empty.
   Part part;
-  /// For each cell of the patch: true if it belongs to an element, false for land and for the sides of the real part.
-  /// The cells of the element itself come first. All of them have the element_id() 0.
+  /// For each cell of the patch: true if the cell belongs to an element, false for land and for sides of the original
+  /// part. The cells of the element itself come first, and their element_id() is 0.
   std::vector<bool> is_element;
-  bool has_sides = false;  ///< true if sides of the real part are in the excerpt
+  bool has_sides = false;  ///< true if the excerpt contains sides of the original part
 };
 
-/// Returns an element and all cells whose distance from it in plan is at most `reach_mm`. The sides of the real part
-/// near the element become facets. Facets that reach the plane of the entrance face are omitted.
+/// Cuts out an element and all cells whose distance from the element in plan is at most `reach_mm`. Sides of the
+/// original part that are near the element are added as facets. Cells that reach the plane of the entrance face are
+/// omitted.
 /// \param frame_from_part maps the part frame to the frame of the excerpt
 /// \param thickness_mm height of the entrance face in the frame of the excerpt
 /// \pre the part is finite and its outline is convex

@@ -60,8 +60,8 @@ bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
 }
 
 /// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of the
-/// vertices, because some vertices are on z = 0, where the border walls end. Sides of the plate are ignored.
-/// \param has_open_sides true if facets of the patch are sides of the plate, as in notches and holes
+/// vertices, because border walls end at z = 0 and therefore have vertices there. Sides of the plate are ignored.
+/// \param has_open_sides true if some facets of the patch are sides of the plate, which occurs at notches and holes
 std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate, bool has_open_sides) {
   std::array<double, 2> range{INFINITY, -INFINITY};
   const auto add = [&](double z) { range = {std::min(range[0], z), std::max(range[1], z)}; };

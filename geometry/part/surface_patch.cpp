@@ -376,7 +376,7 @@ class PatchBuilder {
     }
   }
 
-  /// Adds a vertical facet between two vertices in plan, unless its height is 0 at both.
+  /// Adds a vertical facet between two vertices in plan, unless the height of the facet is 0 at both vertices.
   /// \param z heights of the corners: bottom at `from`, bottom at `to`, top at `to`, top at `from`
   void emit_side(std::uint32_t from, std::uint32_t to, const std::array<double, 4>& z, FacetRole role) {
     const bool has_from = z[3] - z[0] > tolerance_mm_;

@@ -66,8 +66,8 @@ struct SurfacePatch {
 /// Borders of a part with an outline, relative to the patch.
 struct PatchRim {
   std::vector<std::vector<Vec2>> borders;  ///< closed polygons; walls on their sides are border walls
-  /// Convex hull of a part with notches or holes, and empty for other parts. The sides of the part that are not on the
-  /// hull become facets of the patch.
+  /// Convex hull of a part with notches or holes; empty for other parts. Sides of the part that are not on the hull
+  /// become facets of the patch.
   Polygon hull;
   double top_mm = 0.0;  ///< height of the entrance face, at which these facets end
 };

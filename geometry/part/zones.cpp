@@ -63,8 +63,8 @@ bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
   return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
 }
 
-/// Clips the tiles of an array to a region, and to the area of elements of an outline. Tiles of one cell must be
-/// consecutive.
+/// Clips the tiles of an array to a region and to the area of elements inside an outline. Tiles that belong to the same
+/// cell must be consecutive.
 class RegionCutter {
  public:
   /// \param outline outline of the plate, or null
@@ -118,7 +118,7 @@ class RegionCutter {
   double tolerance_mm_;
 };
 
-/// Adds flat tiles where a region contains a part of the outline's margin.
+/// Adds flat tiles where a region overlaps the margin of the outline.
 /// \param outline outline of the plate, or null
 void add_margin(const Polygon& region, const PlanRegion* outline, double tolerance_mm, ArrayTiles& array) {
   if (outline == nullptr) return;
@@ -414,7 +414,7 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
   // this distance.
   const double near_mm = 0.5 * kSamePlace * size_of(spec);
   const PlanRegion* const outline = spec.cutting_outline();
-  // Each convex polygon of an outline adds the rounding errors of its sides.
+  // Each convex polygon of an outline contributes rounding errors from its sides.
   const double cuts = outline != nullptr ? 4.0 * static_cast<double>(outline->whole.pieces.size()) : 1.0;
   const double near_mm2 = cuts * near_mm * spec.size_mm.norm();
   struct Placed {
@@ -492,7 +492,7 @@ std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec)
 
 namespace {
 
-/// Returns the borders of the plate for build_patch().
+/// Returns the borders of the plate in the form that build_patch() requires.
 PatchRim rim_of(const ZonedSpec& spec) {
   PatchRim rim;
   const PlanRegion* const outline = spec.cutting_outline();

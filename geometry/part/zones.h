@@ -69,13 +69,13 @@ struct ZoneFault {
   std::string text;  ///< such as "reaches beyond the part" or "overlaps zone 1"
   Subject subject = Subject::zone;
 };
-/// Returns the convex polygons of a region that are inside the plate.
+/// Returns the portions of a region that are inside the plate, as convex polygons.
 std::vector<Polygon> within_plate(const ZonedSpec& spec, const Polygon& region);
 
-/// Checks the zones. Returns the first fault, or nothing if there is none. The zones must cover the plate without
-/// overlap inside its outline. If zones consist of cells, three more conditions apply. The array of each zone must have
-/// its cells at the positions of the first array's cells. The rotation of a zone must map the outline of each element
-/// to itself. Each zone must contain an element.
+/// Checks the zones. Returns the first fault, or nothing if there is none. The zones must cover the area of the plate
+/// inside its outline without overlap. If zones consist of cells, three more conditions apply. In the array of each
+/// zone, the cells must have the same positions as in the first array. The rotation of a zone must map the outline of
+/// each element to itself. Each zone must contain an element.
 std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 
 /// Returns the approximate number of elements in all zones.

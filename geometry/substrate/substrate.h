@@ -37,12 +37,13 @@ struct FormulaSubstrate {
 /// \throw InputError with the position of the error, if the text is not a formula of x and y
 FormulaSubstrate formula_substrate(std::string_view sag_mm);
 
-/// Surface below an entrance surface. Each element is placed at the height at which the wall between its nominal rim
-/// and the entrance surface, measured along z, is `wall_mm` at its thinnest point. The elements are parallel to z.
+/// Surface at a given wall thickness below an entrance surface. The wall is between the nominal rim of an element and
+/// the entrance surface, measured along z. Each element is placed at the height at which its wall is `wall_mm` at the
+/// thinnest point. The axes of the elements are parallel to z.
 struct OffsetSubstrate {
   double wall_mm = 0.0;  ///< > 0
-  /// Returns the height of the entrance surface in mm, relative to its origin. The position is relative to the centre
-  /// of the part. It is set after the entrance surface has been read.
+  /// Returns the height of the entrance surface in mm, relative to the surface's origin. The argument is a position
+  /// relative to the centre of the part. The function is set after the entrance surface has been read.
   std::function<double(const Eigen::Vector2d& position_mm)> entrance_mm = {};
 };
 

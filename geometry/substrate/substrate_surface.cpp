@@ -59,12 +59,12 @@ Sag sag_of(const FormulaSubstrate& formula) {
   return sag;
 }
 
-/// An offset substrate is not evaluated as a sag.
+/// Returns an empty sag, because an offset substrate is evaluated from the entrance surface instead.
 Sag sag_of(const OffsetSubstrate&) {
   return {};
 }
 
-/// Returns the derivatives of a height from central differences.
+/// Returns a height and its derivatives, which are computed from central differences.
 template <class Height>
 Jet jet_by_differences(const Height& height, const Vec2& p, double step) {
   const auto at = [&](int i, int j) { return height(Vec2(p + step * Vec2(i, j))); };
@@ -244,7 +244,7 @@ Jet SubstrateSurface::at(const Vec2& plan) const {
 }
 
 Jet SubstrateSurface::jet_at(const Vec2& plan) const {
-  constexpr double kStep = 1e-3;  // in element sizes
+  constexpr double kStep = 1e-3;  // as a fraction of the element size
   const auto* const offset = std::get_if<OffsetSubstrate>(&substrate_.shape);
   if (offset == nullptr) return sag_.evaluate(Jet(plan.x(), 1.0, 0.0), Jet(plan.y(), 0.0, 1.0));
   Jet jet = jet_by_differences(offset->entrance_mm, plan, kStep * size_mm_);
@@ -254,7 +254,7 @@ Jet SubstrateSurface::jet_at(const Vec2& plan) const {
 
 double SubstrateSurface::lowest_over(const Polygon& plan) const {
   constexpr int kPointsOfSide = 4;
-  constexpr double kSmallestStep = 1e-7;  // in element sizes
+  constexpr double kSmallestStep = 1e-7;  // as a fraction of the element size
   const auto height = [&](const Vec2& p) {
     const auto* const offset = std::get_if<OffsetSubstrate>(&substrate_.shape);
     const double value = offset != nullptr ? offset->entrance_mm(p) - offset->wall_mm : at(p).value;
@@ -272,7 +272,7 @@ double SubstrateSurface::lowest_over(const Polygon& plan) const {
   for (std::size_t k = 0; k < plan.size(); ++k)
     for (int i = 0; i < kPointsOfSide; ++i)
       take(plan[k] + (static_cast<double>(i) / kPointsOfSide) * (plan[(k + 1) % plan.size()] - plan[k]));
-  // Searches in decreasing steps along the axes (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
+  // Searches for a minimum in decreasing steps along the axes (R. Hooke, T. A. Jeeves, J. ACM 8 (1961), 212).
   for (double step = 0.125 * size_mm_; step > kSmallestStep * size_mm_;) {
     bool moved = false;
     for (const Vec2& way : {Vec2(step, 0.0), Vec2(-step, 0.0), Vec2(0.0, step), Vec2(0.0, -step)})

@@ -40,9 +40,10 @@ class SubstrateSurface {
   /// undefined, the surface is continued along its tangent.
   Jet at(const Vec2& plan) const;
   Vec3 normal_at(const Vec2& plan) const;
-  /// Returns the lowest height over a convex polygon in plan.
+  /// Returns the minimum height of the surface over a convex polygon in plan.
   double lowest_over(const Polygon& plan) const;
-  /// Returns true if elements are placed below an entrance surface, at the lowest height over their outline.
+  /// Returns true if the substrate follows an entrance surface. Each element is then placed at the minimum height of
+  /// the substrate over the element's outline.
   bool is_offset() const { return std::holds_alternative<OffsetSubstrate>(substrate_.shape); }
 
   /// Returns the position in plan for arc coordinates. The two are equal if the elements are parallel to z.

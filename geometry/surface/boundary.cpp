@@ -52,7 +52,7 @@ std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre)
   return angles;
 }
 
-/// Returns the mean of the points, which is inside their convex hull.
+/// Returns the mean of the points, which is always inside their convex hull.
 Vec2 inner_point(const std::vector<Vec2>& points) {
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : points) mean += p / static_cast<double>(points.size());

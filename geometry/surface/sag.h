@@ -25,8 +25,9 @@ struct Asphere {
   enum class Across { radius, x, y } across = Across::radius;  ///< variable that replaces r: for cylinders x or y
 };
 
-/// Biconic surface: two conics in the planes y = 0 and x = 0, (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1
-/// + ky) cy^2 y^2)). If both curvatures and both conic constants are equal, it is a conic of revolution.
+/// Biconic surface with the height (cx x^2 + cy y^2) / (1 + sqrt(1 - (1 + kx) cx^2 x^2 - (1 + ky) cy^2 y^2)). Its
+/// sections in the planes y = 0 and x = 0 are conics. If both curvatures and both conic constants are equal, the
+/// surface is a conic of revolution.
 struct Biconic {
   std::array<double, 2> curvatures_per_mm{};
   std::array<double, 2> conics{};
