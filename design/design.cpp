@@ -93,7 +93,7 @@ std::string CurvedEntrance::name() const {
 
 namespace {
 
-/// Returns the key that determines the shape of an entrance face.
+/// Returns the name of the key that determines the shape of an entrance face.
 std::string_view shape_key_of(const EntranceForm& form) {
   return std::visit(Overloaded{[](const geometry::PlaneEntrance&) { return "entrance_surface.kind"; },
                                [](const geometry::BiconicEntrance&) { return "entrance_surface.radii_mm"; },

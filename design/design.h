@@ -140,14 +140,14 @@ struct FacetPlanesFile {
 
 /// Description of an outline: the keys of the table [outline].
 struct OutlineKeys {
-  /// Given keys with their values, in the order of the format. Margin and tolerance are part of geometry::PlanRegion
-  /// and are not included.
+  /// Keys of the table that are given, with their values, in the order of the file format. The keys of margin and
+  /// tolerance are not included, because these values are members of geometry::PlanRegion.
   std::vector<std::pair<std::string, schema::Value>> values;
-  /// Path of the DXF file, relative to the working directory; empty without a file.
+  /// Path of the DXF file, relative to the working directory; empty if the outline is not in a file.
   std::filesystem::path dxf;
 };
 
-/// Returns the keys with an absolute name of the DXF file, for designs that are written to another folder.
+/// Returns the keys with an absolute path of the DXF file. Designs that are written to another folder need such a path.
 OutlineKeys with_absolute_path(OutlineKeys outline);
 
 /// Array of elements, the plate in front of them, and differences between individual elements.
@@ -155,8 +155,8 @@ struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
   std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
-  /// Keys that determine `part.array.outline`. If they are empty, a document of the design contains the outline with
-  /// all its arcs.
+  /// Keys that determine `part.array.outline`. If there are none, a document of the design contains the borders of the
+  /// outline with all arcs instead.
   OutlineKeys outline = {};
 };
 
@@ -206,7 +206,7 @@ struct ZonedPart {
 /// Shape that a design describes.
 using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::BallLayer>;
 
-/// File with a curved entrance face.
+/// File that contains a curved entrance face.
 struct EntranceFile {
   std::string name;  ///< name of the file, as given
   /// Path of the file, relative to the working directory; entrance_of_design() reads the file.
@@ -217,28 +217,28 @@ struct EntranceFile {
   bool mesh_bottom = false;
 };
 
-/// Curved entrance face that keys of the design describe.
+/// Curved entrance face that is described by keys of the design instead of a file.
 struct EntranceForm {
   geometry::EntranceShape shape;
   double rotation_deg = 0.0;  ///< rotation about the axis of the face, before the face is inclined
   geometry::EntranceInclination inclination;
-  /// True if the design gives `pin_angle_deg`. Otherwise it is the angle of refraction of light along the reference
-  /// axis.
+  /// True if the design specifies the pin angle `pin_angle_deg`. If false, the pin angle is the angle of refraction of
+  /// light along the reference axis.
   bool has_pin_angle = false;
 };
 
-/// Curved entrance face. It replaces the plane entrance face.
+/// Curved entrance face, which replaces the plane entrance face.
 struct CurvedEntrance {
   std::variant<EntranceForm, EntranceFile> surface;
-  /// Position of the origin of the surface's frame (x and y), in the part frame. Default: the centre of the part.
+  /// Position of the origin of the face (x and y) in the part frame; empty: the centre of the part.
   std::optional<std::array<double, 2>> centre_mm;
 
-  /// Returns the description of the face, or null if the face is given by a file.
+  /// Returns the keys that describe the face, or null if the face comes from a file.
   const EntranceForm* form() const { return std::get_if<EntranceForm>(&surface); }
-  /// Returns the file of the face, or null if keys of the design describe the face.
+  /// Returns the file that contains the face, or null if keys of the design describe the face.
   const EntranceFile* file() const { return std::get_if<EntranceFile>(&surface); }
   bool is_mesh() const { return file() != nullptr && file()->is_mesh; }
-  /// Returns the name of the file as given, or the kind of the surface.
+  /// Returns the name of the file as given in the design, or the kind of the surface if there is no file.
   std::string name() const;
 };
 
@@ -267,7 +267,7 @@ struct Substance {
 /// Shell: a separate lens in the air in front of the entrance face, such as the outer lens of a lamp.
 struct OuterShell {
   double thickness_mm = 0.0;  ///< distance between both surfaces at the middle, along the normal of the outer surface
-  /// Distance from the inner surface, at the middle, to the next surface towards the part.
+  /// Distance at the middle between the inner surface of the shell and the next surface towards the part.
   double gap_mm = 0.0;
   std::string material = "PMMA";
   std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
@@ -277,7 +277,8 @@ struct OuterShell {
   std::array<double, 2> wedge_deg = {};   ///< rotation of the inner surface about x and then y, relative to the outer
   std::array<double, 2> tilt_deg = {};    ///< rotation of the whole shell about x and then y
 
-  /// Returns true if the surfaces are parallel planes, so that light keeps its direction.
+  /// Returns true if both surfaces are planes and parallel to each other, so that the shell keeps the direction of
+  /// light.
   bool is_plane_parallel() const {
     return !outer_radius_mm && !inner_radius_mm && wedge_deg == std::array<double, 2>{};
   }
@@ -407,19 +408,22 @@ struct Design {
   /// Returns the position of the key that makes the facets differ from smooth planes. This is the key of the texture
   /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
-  /// Returns the inclination of the entrance face, or null if the axis of the face and the reference axis are z.
+  /// Returns the inclination of the entrance face, or null if both the axis of the face and the reference axis are +z.
   const geometry::EntranceInclination* inclination() const;
-  /// Returns the reference axis of photometry: the direction H = V = 0, which is the axis of the vehicle (UN R3, R150).
-  /// It is a unit vector in the part frame, towards the light. It is +z unless the entrance face is inclined.
+  /// Returns the reference axis of photometry as a unit vector in the part frame, towards the light. It is the
+  /// direction H = V = 0, which is the axis of the vehicle (UN R3, R150). The reference axis is +z unless the entrance
+  /// face is inclined.
   geometry::Vec3 reference_axis() const;
-  /// Returns the power that falls on the part, divided by the illuminance perpendicular to the beam and by the area of
-  /// the part in plan. It is the cosine of the incidence unless the entrance face is inclined. The incident beam then
-  /// covers the outline in a plane perpendicular to the axis of the face.
+  /// Returns the power of the incident beam, divided by its illuminance and by the area of the part in plan. The
+  /// illuminance is measured perpendicular to the beam. The result is the cosine of the angle of incidence unless the
+  /// entrance face is inclined. The beam of an inclined face covers the outline in a plane perpendicular to the axis of
+  /// the face.
   /// \param to_source unit vector in the part frame
   double incident_fraction(const geometry::Vec3& to_source) const;
-  /// Returns the key that determines the curved entrance face.
+  /// Returns the name of the key that determines the curved entrance face.
   std::string_view entrance_key() const;
-  /// Returns true if a shell changes the direction of light. where_shell_deflects() returns the position of this shell.
+  /// Returns true if any shell changes the direction of light. where_shell_deflects() returns the position of the first
+  /// such shell in the file.
   bool has_deflecting_shells() const;
   InputLocation where_shell_deflects() const;
 

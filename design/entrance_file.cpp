@@ -18,7 +18,7 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Returns points on the edges of the outline, including its corners, in the frame of the file.
+/// Returns points on the edges of the outline, including its corners. Coordinates are those of the file with the face.
 std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& origin_mm) {
   constexpr int kPointsOfEdge = 64;
   std::vector<Vec2> points;
@@ -30,7 +30,8 @@ std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& or
   return points;
 }
 
-/// Checks that the turned surface covers the whole part, without extrapolation of the design surface.
+/// Checks that the turned region of the surface covers the whole part. Outside of this region, the surface would have
+/// to be extrapolated.
 void check_region(const geometry::TurnedEntrance& front, const std::vector<Vec2>& border) {
   constexpr double kRoom = 1.0 + 1e-9;
   const auto is_turned = [&](const Vec2& p) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Entrance surfaces of designs that are described by keys.
+// Entrance surfaces that are described by keys of a design, and substrates below them.
 
 #include <memory>
 
@@ -9,14 +9,14 @@
 
 namespace retrace::design {
 
-/// Returns the surface that keys of a design describe.
-/// \param origin_mm position of its origin
+/// Returns the entrance surface that keys of a design describe.
+/// \param origin_mm position of the surface's origin in the part frame
 std::shared_ptr<const geometry::EntranceSurface> surface_of(const EntranceForm& form, const geometry::Vec3& origin_mm);
 
-/// Completes a design whose elements are placed below its entrance surface (geometry::OffsetSubstrate): sets the
-/// heights of the surface and the thickness of the part, and checks the substrate. Other designs are not changed.
-/// \throw InputError that names file, line and key, if the surface folds, or if the substrate is too steep or too
-/// curved \pre if the substrate is an OffsetSubstrate, the entrance surface is described by keys
+/// Completes a design whose elements are placed below its entrance surface (geometry::OffsetSubstrate). Sets the
+/// heights of the surface and the thickness of the part, and checks the substrate. Does not change other designs.
+/// \pre if the substrate is an OffsetSubstrate, the entrance surface is described by keys
+/// \throw InputError that names file, line and key, if the surface folds or the substrate is too steep or curved
 void find_offset(Design& design);
 
 }  // namespace retrace::design

@@ -24,8 +24,8 @@ geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Par
   return surface;
 }
 
-/// Returns the height of the origin of the entrance face. If the elements are placed below the face, z = 0 is the
-/// lowest point of the surface at the distance of the wall below the face.
+/// Returns the height of the entrance face's origin. Usually, it is the thickness of the part. For a substrate below
+/// the entrance face, the height is chosen such that the lowest point of the substrate is at z = 0.
 double origin_height_mm(const geometry::Part& part) {
   const std::optional<geometry::Substrate>& substrate = part.spec.substrate;
   if (!substrate || !std::holds_alternative<geometry::OffsetSubstrate>(substrate->shape)) return part.thickness_mm;
@@ -47,9 +47,9 @@ geometry::Entrance placed_entrance(const Design& design, const geometry::Part& p
   return entrance_of_file(design, part, origin_mm);
 }
 
-/// Checks that the entrance face is above the back: above the highest point of the back or, for exact surfaces, above
-/// the back at each point of the part.
-/// \throw InputError if it is not
+/// Checks that the entrance face is above the back of the part. An exact surface must be above the back at each point.
+/// A mesh must be above the highest point of the back.
+/// \throw InputError if the face is not above the back
 void require_room(const geometry::Entrance& entrance, const geometry::Part& part) {
   const geometry::EntranceRange range = geometry::entrance_range(entrance, part.outline);
   if (range.lowest_mm > part.top_mm) return;
@@ -69,7 +69,7 @@ void require_room(const geometry::Entrance& entrance, const geometry::Part& part
                     fixed(contact->entrance_mm, 4), fixed(contact->back_mm, 4)));
 }
 
-/// Calls require_room(), and adds the name of the file to its error message unless the name is empty.
+/// Calls require_room(). Adds the file name `name` to the error message unless it is empty.
 void check_room(const geometry::Entrance& entrance, const geometry::Part& part, const std::string& name) {
   try {
     require_room(entrance, part);

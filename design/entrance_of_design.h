@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes the curved entrance face of a design, from its keys or from its file, and places it over the part.
+// Makes the curved entrance face of a design from keys or from a file, and places it in front of the part.
 
 #include "design/design.h"
 #include "geometry/entrance/entrance_surface.h"
@@ -8,11 +8,12 @@
 
 namespace retrace::design {
 
-/// Returns the curved entrance face of a design in the part frame, and reads its file if there is one. The origin of
-/// the face is at z = thickness_mm and at CurvedEntrance::centre_mm. The face must cover the whole part, and it must be
-/// above the part's back. It must not fold. A turned face must cover the part with its turned region.
+/// Returns the curved entrance face of a design in the part frame, and reads the file of the face if there is one. The
+/// origin of the face is at CurvedEntrance::centre_mm and z = thickness_mm. Above an OffsetSubstrate, the height of the
+/// origin follows from the substrate instead. The face must cover the whole part, must be above its back, and must not
+/// fold. If the face is made by turning, its turned region must cover the whole part.
 /// \throw InputError that names file and line
-/// \pre design.entrance
+/// \pre design.entrance has a value
 geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part);
 
 }  // namespace retrace::design

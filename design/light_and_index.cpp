@@ -12,12 +12,12 @@
 namespace retrace::design {
 namespace {
 
-/// Returns the position of the key that determines the wavelengths of the light.
+/// Returns the position in the file of the key that determines the wavelengths of the light.
 InputLocation light_location(const Design& design) {
   return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
-/// Returns the spectral flux of the design's lamp or of its lines, before wavelengths are selected.
+/// Returns the spectral flux of the lamp or of the spectral lines, before representative wavelengths are selected.
 materials::Spectrum flux_of(const Design& design) {
   using Kind = LightSpectrum::Kind;
   const LightSpectrum& light = *design.light.spectrum();
@@ -44,7 +44,7 @@ materials::Material material_of(const Design& design, const materials::MaterialL
     try {
       return read();
     } catch (const InputError& error) {
-      // Adds the position of the key that names the file.
+      // Adds the position of the key that contains the name of the file.
       throw InputError(design.where("body.catalogue"), error.what());
     }
   };
@@ -68,7 +68,7 @@ double index_at_wavelength(const Design& design, const materials::Material& mate
   try {
     return materials::index_relative_to_air(material, air, wavelength_nm, temperature_c);
   } catch (const InputError& error) {
-    throw InputError(light_location(design), error.what());  // adds the position at which the wavelength was given
+    throw InputError(light_location(design), error.what());  // adds the position of the key of the wavelength
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Symmetries of a design and its illumination: transformations of directions that do not change any optical result.
+// Symmetries of a design and its illumination: transformations of directions that leave all optical results unchanged.
 
 #include <Eigen/Core>
 #include <vector>

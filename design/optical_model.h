@@ -39,13 +39,13 @@ struct OpticalModel {
   /// Returns the index in `spectral` of the wavelength that is nearest to `wavelength_nm`.
   /// \pre `spectral` is not empty
   std::size_t nearest_wavelength() const;
-  /// Returns the curved entrance face as tracers take it: null if the face is plane.
+  /// Returns the curved entrance face as the tracers expect it, or null if the face is plane.
   const geometry::Entrance* curved_entrance() const { return entrance ? &*entrance : nullptr; }
 };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.
-/// \throw InputError that names file and line. It is thrown for an unknown material, an invalid spectrum, and a
-///        wavelength without an index. It is also thrown for balls, which have no geometry::Part.
+/// \throw InputError that names file and line, for an unknown material, an invalid spectrum, or a wavelength without an
+///     index, and for balls, which have no geometry::Part
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library);
 
 /// Returns a model without a part, for tracers of balls.

@@ -18,16 +18,16 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Shell, raytrace::ShellSurface;
 
-// Number of steps of the grid of points at which distances are determined, along each axis of the outline.
+// Number of intervals, along each axis, of the grid of points at which distances between surfaces are determined.
 constexpr int kGridSteps = 64;
-// Distance in mm by which surfaces may overlap because of rounding.
+// Maximum overlap of two surfaces, in mm, that is attributed to rounding errors.
 constexpr double kRoundingMm = 1e-9;
 
 std::string key_of(std::size_t shell, std::string_view name) {
   return schema::path_in(schema::path_of_entry("shell", shell), name);
 }
 
-/// Returns the rotation about x and then about y.
+/// Returns the matrix of a rotation about x followed by a rotation about y.
 Eigen::Matrix3d rotation(const std::array<double, 2>& angles_deg) {
   const auto about = [](double angle_deg, const Vec3& axis) {
     return Eigen::AngleAxisd(Angle::from_deg(angle_deg).rad(), axis).toRotationMatrix();
@@ -35,18 +35,18 @@ Eigen::Matrix3d rotation(const std::array<double, 2>& angles_deg) {
   return about(angles_deg[1], Vec3::UnitY()) * about(angles_deg[0], Vec3::UnitX());
 }
 
-/// Returns a surface of a shell.
-/// \param radius_mm > 0 if the surface is convex towards the source; empty: plane
+/// Returns one surface of a shell.
+/// \param radius_mm radius of a sphere, > 0 if the surface is convex towards the source; empty: plane
 ShellSurface surface_of(const Vec3& vertex_mm, const Vec3& normal, const std::optional<double>& radius_mm) {
   return {vertex_mm, normal, radius_mm ? 1.0 / *radius_mm : 0.0};
 }
 
-/// Returns the surfaces of a shell.
-/// \param base_mm height of the next surface towards the part at the middle
+/// Returns both surfaces of a shell.
+/// \param base_mm height at the middle of the next surface towards the part
 Shell surfaces_of(const OuterShell& given, double base_mm) {
   const Eigen::Matrix3d tilt = rotation(given.tilt_deg);
   const Vec3 outer_normal = tilt * Vec3::UnitZ();
-  // Equal angles give exactly equal normals, which identify plane-parallel shells.
+  // The same normal is used for both surfaces, because plane-parallel shells are identified by exactly equal normals.
   const bool is_wedge = given.wedge_deg != std::array<double, 2>{};
   const Vec3 inner_normal = is_wedge ? Vec3(tilt * rotation(given.wedge_deg) * Vec3::UnitZ()) : outer_normal;
   const Vec3 inner_vertex(0.0, 0.0, base_mm + given.gap_mm);
@@ -72,7 +72,7 @@ double index_of_shell(const Design& design, const materials::MaterialLibrary& li
   return index;
 }
 
-/// Returns points of a part in plan, relative to its middle: a grid over the outline and points on its sides.
+/// Returns plan points relative to the middle of the part: a grid over the outline, and points on the outline's sides.
 std::vector<Vec2> points_over(const geometry::Polygon& outline) {
   std::vector<Vec2> points;
   const geometry::Rectangle box = geometry::bounding_box(outline);
@@ -110,7 +110,7 @@ std::vector<Vec3> points_of_entrance(const geometry::Part& part, const std::opti
   return points;
 }
 
-/// Returns the coordinates of a point in the part frame as a text.
+/// Formats the coordinates of a point in the part frame.
 /// \param at point relative to the middle of the part
 std::string point_text(const Vec2& at, const geometry::Part& part) {
   const Vec2 point =
@@ -118,13 +118,13 @@ std::string point_text(const Vec2& at, const geometry::Part& part) {
   return fmt::format("x = {}, y = {} mm", fixed(point.x(), 4), fixed(point.y(), 4));
 }
 
-/// Checks the distances of one shell.
+/// Checks the distances between one shell and its neighbours at given points, and records the extreme distances.
 class ClearanceCheck {
  public:
   ClearanceCheck(const Design& design, const raytrace::Shells& shells, const geometry::Part& part, std::size_t k)
       : design_(design), shells_(shells), part_(part), k_(k) {}
 
-  /// Adds a point of the plan.
+  /// Records the thickness of the shell at a point of the plan and, if there is a next shell, the gap to it.
   void add_thickness(const Vec2& at) {
     const double inner_mm = height_of(shells_[k_].inner, at, k_, "inner_radius_mm");
     const double thickness_mm = height_of(shells_[k_].outer, at, k_, "outer_radius_mm") - inner_mm;
@@ -140,7 +140,7 @@ class ClearanceCheck {
     if (k_ + 1 < shells_.size()) add_gap(at, height_of(shells_[k_ + 1].outer, at, k_ + 1, "outer_radius_mm"));
   }
 
-  /// Adds a point of the next surface towards the part.
+  /// Records the gap between the shell and a point of the next surface towards the part.
   void add_gap(const Vec2& at, double next_mm) {
     const double gap_mm = height_of(shells_[k_].inner, at, k_, "inner_radius_mm") - next_mm;
     if (gap_mm < -kRoundingMm)

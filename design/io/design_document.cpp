@@ -76,7 +76,7 @@ void set_element(Document& document, const Element& element) {
       element);
 }
 
-/// Writes an outline with all its arcs, in the part frame.
+/// Writes all borders of an outline with their arcs, in the part frame.
 /// \pre all holes are round
 void set_borders(Keys& keys, const geometry::PlanRegion& plan) {
   std::vector<std::vector<double>> corners;
@@ -101,7 +101,7 @@ void set_borders(Keys& keys, const geometry::PlanRegion& plan) {
   if (!holes.empty()) keys.set("holes_mm", std::move(holes));
 }
 
-/// Writes an outline: its keys as they were given, or its borders.
+/// Writes an outline. Uses the keys from which the outline was made, or its borders if there are no such keys.
 void set_outline(Document& document, const geometry::PlanRegion& plan, const OutlineKeys& given) {
   Keys keys(document, "outline");
   keys.set("margin_mm", plan.margin_mm);
@@ -285,7 +285,7 @@ Value absorption_value(const Absorption& absorption) {
                     absorption);
 }
 
-/// Returns true if the elements are placed below the entrance surface.
+/// Returns true if the substrate follows the entrance surface, so that the elements are placed below this surface.
 bool is_below_entrance(const Design& design) {
   return design.elements() && design.part().substrate &&
          std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape);

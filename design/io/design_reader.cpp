@@ -55,7 +55,7 @@ Shape read_shape(const Document& document) {
   return read_balls(document);
 }
 
-/// Reads the absorption of a body or a shell.
+/// Reads the absorption coefficient of a body or a shell: a single number or a list of values by wavelength.
 Absorption read_absorption(const Document& document, std::string_view key) {
   if (!document.is_list(key)) {
     const std::optional<double> per_mm = document.number_if(key);

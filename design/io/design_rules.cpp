@@ -132,7 +132,7 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a curved entrance face is used only with a convex outline without holes.
+/// Checks that a design with a curved entrance face has a convex outline without holes.
 void check_outline(const Document& document, const PartSpec& part) {
   if (!part.array.outline || part.array.outline->is_convex() || !document.has("entrance_surface")) return;
   document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
@@ -302,7 +302,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
     document.fail(
         key,
         "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
-  // A substrate below the entrance surface is checked after the surface has been read (find_offset()).
+  // find_offset() checks a substrate below the entrance surface, because the surface must be read first.
   if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape)) return;
   try {
     geometry::check_substrate(part);
@@ -332,7 +332,7 @@ void check_bowl(const Document& document) {
                               fixed_apart(most_deg, *given_deg, 6), shortest(*given_deg)));
 }
 
-/// Checks that the radii of an entrance surface are not 0.
+/// Checks that no radius of an entrance surface is 0.
 void check_entrance_radii(const Document& document) {
   for (const std::string_view key : {"entrance_surface.radius_mm", "entrance_surface.radii_mm"})
     if (document.has(key) && std::ranges::count(document.numbers(key), 0.0) > 0)

@@ -22,8 +22,8 @@ std::array<double, 2> pair_in_surface(const Document& document, std::string_view
   return {given[0], given[1]};
 }
 
-/// Reads the shape of the surface.
-/// \pre the key `kind` is given
+/// Reads the shape of the entrance surface.
+/// \pre the document has the key `entrance_surface.kind`
 geometry::EntranceShape read_entrance_shape(const Document& document) {
   const std::string kind = document.text(key_in_surface("kind"));
   const auto number = [&](std::string_view name) { return document.number(key_in_surface(name)); };

@@ -61,7 +61,7 @@ void check_material(const Document& document) {
 
 namespace {
 
-/// Checks that an absorption by wavelength is a valid curve.
+/// Checks that an absorption coefficient given as a function of wavelength is a valid curve.
 void check_absorption_at(const Document& document, std::string_view key) {
   if (!document.is_list(key)) return;
   const std::vector<std::vector<double>> curve = document.rows(key);
@@ -72,7 +72,7 @@ void check_absorption_at(const Document& document, std::string_view key) {
   if (curve.size() < 2) document.fail(key, "must be a number or a list of two or more pairs, got a list of one pair");
 }
 
-/// Checks that a shell in front of an infinite array is plane-parallel and not tilted.
+/// Checks a shell in front of an infinite array. It must be plane-parallel and must not be tilted.
 void check_unbounded_shell(const Document& document, const std::string& shell) {
   constexpr std::string_view why = "not allowed in front of an infinite array: the shell must be plane-parallel";
   for (const std::string_view name : {"outer_radius_mm", "inner_radius_mm"})

@@ -26,7 +26,7 @@ inline constexpr std::string_view kAbsorption = "body.absorption_per_mm";
 void check_material(const schema::Document& document);
 /// Checks that an absorption by wavelength is a valid curve.
 void check_absorption(const schema::Document& document);
-/// Checks that there are few shells, that their radii are not 0, and that the design supports them.
+/// Checks the number of shells and their radii, which must not be 0, and that the rest of the design allows shells.
 void check_shells(const schema::Document& document);
 /// Checks that each line of a spectrum occurs only one time.
 void check_lines(const schema::Document& document);

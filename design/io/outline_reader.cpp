@@ -31,8 +31,9 @@ constexpr double kMaxCorners = 2000.0;
 /// Maximum sagitta of an arc, divided by its chord.
 constexpr double kMaxSagittaPerChord = 5.0;
 
-/// Returns one number for each corner or side. A single number applies to all of them.
-/// \param items "corners" or "sides"
+/// Returns one number for each corner or side of the outline. A single number in the document applies to all of them.
+/// \param count number of corners or sides
+/// \param items "corners" or "sides", for error messages
 std::vector<double> list_of(const Document& document, std::string_view key, std::size_t count, std::string_view items) {
   std::vector<double> values = document.numbers(key);
   if (values.size() == 1 && !document.is_list(key)) values.resize(count, values.front());
@@ -77,7 +78,7 @@ OutlineLoop circle_of(const Document& document, std::string_view key, const std:
   return geometry::circle({values[0], values[1]}, values[2]);
 }
 
-/// Returns the border of the outline. It is followed by the holes if the outline comes from a DXF file.
+/// Returns the loops that the document describes: the outer border, and also the holes if the outline is a DXF file.
 std::vector<OutlineLoop> border_of(const Document& document) {
   if (document.has(kDxf)) {
     const std::filesystem::path file = document.file(kDxf);

@@ -108,7 +108,8 @@ PartSpec read_part(const Document& document) {
   read_edges(document, part.edges);
   for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)
     part.scratches.push_back(scratch_of(document, schema::path_of_entry("surface.scratches", i)));
-  // A part below its entrance surface has no thickness_mm. find_offset() replaces the thickness of its wall.
+  // A part whose elements follow its entrance surface has no key thickness_mm. The thickness of the wall is used until
+  // find_offset() determines the thickness of the part.
   part.thickness_mm =
       document.number_if("body.thickness_mm").value_or(document.number_if("substrate.wall_mm").value_or(0.0));
   return part;

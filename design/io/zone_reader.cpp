@@ -117,15 +117,15 @@ Document document_of_zone(const Document& document, std::size_t zone, const std:
   }
 }
 
-/// Returns the x coordinate to the left of which a fraction of the part's area is located.
+/// Returns the x coordinate for which a given fraction of the part's area is to the left.
 double end_of_stripe(const geometry::ZonedSpec& spec, double fraction) {
   const geometry::PlanRegion* const outline = spec.cutting_outline();
   if (outline == nullptr) return fraction * spec.size_mm.x();
   return geometry::coordinate_of_area_fraction(*outline, outline->box_mm, 0, fraction);
 }
 
-/// Divides the part into stripes along x, in the order of the zones. Each stripe has its fraction of the area inside
-/// the outline.
+/// Divides the part along x into stripes, one for each zone, in the order of the zones. Each stripe contains the zone's
+/// fraction of the area inside the outline.
 void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
@@ -272,7 +272,7 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   }
 }
 
-/// Returns the elements of a zone without the outline and the margin of the whole part.
+/// Returns a specification of a zone's elements from which the outline and the margin of the whole part are removed.
 geometry::PartSpec without_outline(geometry::PartSpec elements) {
   elements.array.outline.reset();
   elements.array.x_offset_mm = elements.array.y_offset_mm = 0.0;
