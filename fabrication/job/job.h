@@ -124,7 +124,8 @@ struct CutZone {
   std::vector<geometry::Vec2> apexes_mm;  ///< positions of the apexes in the part frame
 };
 
-/// Closed border of the outline of a part, or of a hole in it: straight sides and circular arcs.
+/// Closed border of a part with an outline, either around the part or around a hole. It has straight sides and circular
+/// arcs.
 struct JobBorder {
   std::vector<geometry::OutlineSide> sides;
 };
@@ -144,10 +145,10 @@ struct Job {
   Workpiece workpiece;
   geometry::Element element;           ///< element of the part, without cant
   geometry::AngleErrors angle_errors;  ///< intended angle errors of the elements; cube corners only
-  /// Finite array; for a `single` element, the array has the size of the element's aperture. `array.outline` is the
-  /// polygon of `outline`.
+  /// Finite array. For a `single` element, the array has the size of the element's aperture. `array.outline` contains
+  /// the polygons that replace the borders in `outline`.
   geometry::ArrayLayout array;
-  /// Outline of the part. Elements that are not completely inside it are not cut. Not set for a rectangle.
+  /// Outline of the part; empty for a rectangle. Only elements that are completely inside the outline are cut.
   std::optional<JobOutline> outline;
   /// Zones that are cut instead of the array. If there are zones, only the x and y lengths of `array` are used.
   std::vector<CutZone> zones;
@@ -186,10 +187,10 @@ struct CutElement {
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
-/// Returns an outline as a job stores it.
+/// Converts the outline of a plan to the form in which a job stores it.
 JobOutline job_outline(const geometry::PlanRegion& plan);
 
-/// Returns the plan of the job's part, whose margin is the offset of the array.
+/// Returns the plan of the job's part. The width of its margin is the offset of the array.
 /// \param fault set if the outline is not allowed; the returned plan must then not be used
 /// \pre the job has an outline
 geometry::PlanRegion plan_of_outline(const Job& job, std::optional<geometry::OutlineFault>& fault);

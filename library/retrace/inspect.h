@@ -18,7 +18,7 @@ struct Inspection {
   Drawing plan;       ///< SVG; each of the first four drawings is empty if it does not apply to the design
   Drawing section;
   Drawing entrance_surface;  ///< profile of a curved entrance surface
-  Drawing shells;            ///< section through the shells in front of the part
+  Drawing shells;            ///< section through the shells in front of the part; empty without shells
   Drawing view;              ///< view in three dimensions; PNG
 };
 

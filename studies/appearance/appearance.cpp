@@ -33,8 +33,9 @@ constexpr std::size_t kPartsOfProbes = 4;
 constexpr double kAsideDeg = 30.0;
 constexpr RandomKey kProbeKey{.seed = kAppearanceSeed, .stream = 2};
 
-/// Checks that the exact engine supports the design, and that the design returns light like a material.
-/// \throw InputError if the engine does not support it
+/// Checks that the exact engine supports the design, and that the design returns light in the same way at every point,
+/// as a material does.
+/// \throw InputError if one of these conditions is not met
 void check_engine(const design::Design& design, PhotometrySettings request) {
   if (design.entrance)
     throw InputError(design.where(design.entrance_key()),

@@ -38,7 +38,7 @@ struct AsMachined {
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< scratches caused by chips in the tool's edge
   MachinedBody body;
-  design::OutlineKeys outline;  ///< keys of the outline, see outline_of_job(); empty for a rectangle
+  design::OutlineKeys outline;  ///< result of outline_of_job(); empty for a rectangle
   Warnings warnings;
 };
 

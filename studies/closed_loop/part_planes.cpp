@@ -92,7 +92,7 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
 
 namespace {
 
-/// Returns true if two outlines have the same borders within rounding errors.
+/// Returns true if the borders of two outlines are equal apart from rounding errors.
 bool has_same_borders(const geometry::PlanRegion& a, const geometry::PlanRegion& b) {
   constexpr double kSameFraction = 1e-9;
   const double near_mm = kSameFraction * a.box_mm.size().norm();

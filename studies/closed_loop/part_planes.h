@@ -35,14 +35,14 @@ std::optional<design::Design> design_of_job(const fabrication::Job& job, const s
 /// \param warnings receives a warning if the design does not exist
 MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file, Warnings& warnings);
 
-/// Returns the keys of the outline of the job's part: those of the job's design, or no keys without a design or if the
-/// outline of the design differs.
-/// \throw InputError at the field `as_machined` if keys of the outline are not available, but a design cannot contain
-///     its borders
+/// Returns the keys of the outline of the job's part, which are taken from the job's design. Returns no keys if there
+/// is no design or if the outline of the design differs from that of the job.
+/// \throw InputError at the field `as_machined` if there are no keys and the job has a hole that is not round. A design
+///     can describe such a hole only by a DXF file.
 /// \pre the job has an outline
 design::OutlineKeys outline_of_job(const fabrication::Job& job, const std::filesystem::path& job_file);
 
-/// Returns the specification of the job's elements. Partial elements of an outline are omitted.
+/// Returns the specification of the elements of a job. Elements that the outline would cut are omitted.
 /// \param has_planes true: each facet has its own plane; false: all elements are equal
 geometry::PartSpec machined_elements(const fabrication::Job& job, bool has_planes);
 

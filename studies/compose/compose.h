@@ -30,8 +30,8 @@ struct ComposeRequest {
   std::vector<std::string> goals;            ///< quantities whose minimum is maximized
   std::vector<Constraint> cell_constraints;  ///< constraints that each cell of the family must satisfy
   std::vector<Constraint> part_constraints;  ///< constraints on means over the part
-  /// Costs, such as the price of an hour of machining. Each pair contains a quantity and the reduction of the merit per
-  /// unit of the quantity's mean. Costs are inputs, whereas the dual prices (MixturePrices) are results.
+  /// Costs, such as the price of an hour of machining. Each pair contains a quantity and the amount by which the merit
+  /// decreases per unit of the quantity's mean. Costs are inputs, whereas the dual prices (MixturePrices) are results.
   std::vector<std::pair<std::string, double>> price;
   /// Quantity whose mean is one axis of the Pareto front. The minimum goal is the other axis.
   std::optional<FrontAxis> front;

@@ -43,10 +43,11 @@ std::optional<std::vector<double>> best_fractions(const RandomParts& parts, doub
 /// Cells and their fractions of the area, the largest first.
 using CellFractions = std::vector<std::pair<std::size_t, double>>;
 
-/// Searches for the best set of at most `max_zones` cells and their fractions of the area. The best set maximizes the
-/// minimum goal of a part, averaged over the worst parts. The number of cells must be small, because all sets are
-/// tried. \param parts random parts with one zone for each cell \return nothing if the computation was cancelled or no
-/// set is allowed
+/// Searches for the best set of at most `max_zones` cells and for their fractions of the area. The best set has the
+/// largest minimum goal of a part, averaged over the worst parts. All sets are tried, so the number of cells must be
+/// small.
+/// \param parts random parts with one zone for each cell
+/// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellFractions> best_set(const RandomParts& parts, double worst_fraction, std::size_t max_zones,
                                       const compute::Bounds& bounds, const Cancellation* cancel);
 

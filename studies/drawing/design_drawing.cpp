@@ -171,8 +171,8 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
   return angle;
 }
 
-/// Adds the dimensions of the entrance face in a section: its height at the right end and, for a curved face, its
-/// highest point.
+/// Adds the height dimensions of the entrance face to a section. They are the height at the right end and, for a curved
+/// face, the height of the highest point.
 void add_heights(SectionPanel& panel, const Part& part) {
   const SectionView& view = panel.view;
   if (view.entrance_corners == 2) {
@@ -248,7 +248,7 @@ std::string zones_text(const Part& part) {
                      part.elements_partial);
 }
 
-/// Returns the centres of the cells of a zone. One patch stores the cells of all zones, one zone after the other.
+/// Returns the centres of the cells of a zone. All cells are in one patch, ordered by zone.
 std::vector<Vec2> centres_of_cells(const Part& part, std::size_t zone) {
   std::size_t first = 0;
   for (std::size_t k = 0; k < zone; ++k) first += part.zones[k].cells;
@@ -297,7 +297,7 @@ std::string zone_text(const design::ZonedPart& zoned, const Part& part, std::siz
   return text + fmt::format(", {:.1f} % of the area", 100.0 * elements.area_mm2 / all_mm2);
 }
 
-/// Adds the regions of a zone as far as they are inside the outline of the part.
+/// Adds the portions of a zone's regions that are inside the outline of the part.
 void add_regions(PlanZone& zone, const geometry::ZonedSpec& spec, const std::vector<geometry::Polygon>& regions) {
   for (const geometry::Polygon& region : regions) {
     const std::vector<geometry::Polygon> inside = geometry::within_plate(spec, region);
@@ -326,7 +326,8 @@ std::vector<PlanZone> zones_of(const design::ZonedPart& zoned, const Part& part)
   return zones;
 }
 
-/// Returns the y of a row of elements near the centre of the part, with the same shift as the dimensioned element.
+/// Returns the y coordinate of a row of elements near the centre of the part. The elements of this row have the same
+/// shift along x as the element with dimensions.
 double row_near_centre_mm(const ArrayFigures& a) {
   const double centre_mm = a.extent_mm.centre().y();
   const double step_mm = (a.shift_mm > 0.0 ? 2.0 : 1.0) * a.pitch_mm.y();

@@ -34,10 +34,10 @@ struct AngleDimension {
 /// Zone of a part in the plan.
 struct PlanZone {
   std::vector<geometry::Polygon> regions_mm;  ///< regions of the zone; empty if the zone consists of elements
-  /// Sides of the regions inside the outline of the part. Empty for a rectangular part, where the sides of `regions_mm`
-  /// are the borders of the zone.
+  /// Sides of the regions, clipped to the outline of the part. Empty for a rectangular part, for which the sides of
+  /// `regions_mm` are the borders of the zone.
   std::vector<PlanLine> sides_mm = {};
-  std::vector<geometry::Vec2> labels_mm;  ///< positions of the number of the zone, within the zone
+  std::vector<geometry::Vec2> labels_mm;  ///< positions within the zone at which its number is drawn
   std::string description;                ///< such as "1307 full elements and 148 cut, 50.0 % of the area"
 };
 
@@ -74,7 +74,7 @@ struct DesignDrawing {
   Warnings warnings;
 };
 
-/// Maximum number of elements along x for which the section of a part with a curved entrance face shows the whole part.
+/// Maximum number of elements along x for which a section shows the whole width of a part with a curved entrance face.
 inline constexpr double kMaxSectionElements = 80.0;
 /// Maximum number of faces that a plan draws individually.
 inline constexpr std::size_t kMaxPlanFaces = 16'000;
@@ -83,10 +83,10 @@ inline constexpr std::size_t kMaxPlanFaces = 16'000;
 /// \param part part of the design
 DesignDrawing draw_design(const design::Design& design, const geometry::Part& part);
 
-/// Returns the drawing of a design with a curved entrance face. The section shows the whole width of the part near its
-/// centre, unless the elements are too small.
+/// Returns the drawing of a design with a curved entrance face. The section is near the centre of the part and shows
+/// its whole width, unless there are more than kMaxSectionElements elements along x.
 /// \param part part of the design
-/// \param entrance_height heights of the entrance face
+/// \param entrance_height function that returns the heights of the entrance face
 DesignDrawing draw_curved_design(const design::Design& design, const geometry::Part& part,
                                  const geometry::EntranceHeights& entrance_height);
 

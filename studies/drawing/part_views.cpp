@@ -19,7 +19,7 @@ constexpr double kMaxWallNormalZ = 1e-6;
 constexpr double kSame = 1e-7;
 // Tolerance of the cosine between normals. Within it, neighbours are one face, for example triangles of a mesh.
 constexpr double kSameNormal = 1e-9;
-// Number of intervals of the profile of a curved entrance face in a section.
+// Number of intervals into which the profile of a curved entrance face is divided in a section.
 constexpr int kProfilePoints = 400;
 
 Rectangle box_of(const SurfacePatch& patch) {
@@ -199,12 +199,12 @@ std::vector<DesignExcerpt> pieces_of(const Part& part, double y_mm, double from,
   return pieces;
 }
 
-/// Adds the profile of a curved entrance face to a section, from right to left.
+/// Adds the profile of a curved entrance face to the outline of a section, beginning at the right.
 void add_profile(SectionView& view, const geometry::EntranceHeights& entrance_height) {
   for (int k = kProfilePoints; k >= 0; --k) {
     const double share = static_cast<double>(k) / kProfilePoints;
     const double x_mm = view.x_from_mm + share * (view.x_to_mm - view.x_from_mm);
-    // Points are moved inwards a little, because the face may end at the outline.
+    // Points are moved inwards slightly, because a face that ends at the outline may have no height there.
     const double middle_mm = 0.5 * (view.x_from_mm + view.x_to_mm);
     const double z_mm = entrance_height({middle_mm + (1.0 - 1e-7) * (x_mm - middle_mm), view.y_mm});
     if (std::isfinite(z_mm)) view.outline_mm.emplace_back(x_mm, z_mm);

@@ -43,15 +43,15 @@ struct SectionView {
   double y_mm = 0.0;
   double x_from_mm = 0.0;
   double x_to_mm = 0.0;
-  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; the last corners are on the entrance face
-  std::size_t entrance_corners = 2;        ///< number of these corners, from right to left
+  std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; see `entrance_corners`
+  std::size_t entrance_corners = 2;        ///< number of last corners, on the entrance face from right to left
 
   /// Returns the corners on the entrance face, from right to left.
   std::vector<geometry::Vec2> entrance_mm() const;
 };
 
 /// Returns the section of a part.
-/// \param entrance_height heights of a curved entrance face; empty for a plane face
+/// \param entrance_height function that returns the heights of a curved entrance face; empty for a plane face
 /// \return nothing if the plane does not hit the part, or if the back has overhangs (meshes)
 std::optional<SectionView> section_view(const geometry::Part& part, double y_mm, double x_from_mm, double x_to_mm,
                                         const geometry::EntranceHeights& entrance_height = {});

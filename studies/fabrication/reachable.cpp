@@ -64,7 +64,7 @@ design::Design reached(const design::Design& design, const std::string& facets_f
   array.part.array.x_length_mm = part.array.x_length_mm;
   array.part.array.y_length_mm = part.array.y_length_mm;
   if (part.array.outline) {
-    // The machined cavities extend into the margin, so the table of planes contains it.
+    // Machined cavities extend into the margin. The design with the table of planes therefore has no margin.
     array.part.array.outline =
         std::make_shared<const geometry::PlanRegion>(geometry::without_margin(*part.array.outline));
     array.outline = design::with_absolute_path(design.elements()->outline);

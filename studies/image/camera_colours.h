@@ -24,8 +24,8 @@ struct CameraColours {
   std::array<double, 3> rgb(double y, std::size_t pixel) const;
 };
 
-/// Returns the tristimulus values of a lamp, with Y = 1.
-/// \pre `light` is not the design's own light
+/// Returns the tristimulus values of the light of a lamp, scaled to Y = 1.
+/// \pre `light` is not the light of the design itself
 materials::Tristimulus lamp_colour(PhotometricLight light);
 
 /// Returns the colours of a picture. The responses are traced separately, and their noise would appear as colours. Each

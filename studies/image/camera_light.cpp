@@ -266,7 +266,7 @@ class CameraLight::Grid {
       }
       if (!seen) return false;
       set_node(kCentre, view, seen->front());
-      // Without visible light, the error is not reduced.
+      // If the returned light is too weak to be visible, its error need not be reduced.
       const bool is_dark = nodes_.at(kCentre).luminance < kMinRetroreflected;
       if (is_dark || step == kMaxCutoffSteps || seen->front().relative_error() <= kResamplingError) return true;
       use(kCutoffStep * cutoff);

@@ -13,8 +13,8 @@
 
 namespace retrace::studies {
 
-/// Minimum luminance per illuminance, in cd/(lx m^2), at which retroreflected light is regarded as visible. A white
-/// matt surface has 0.32.
+/// Minimum ratio of luminance to illuminance at which retroreflected light is regarded as visible, in cd/(lx m^2). The
+/// ratio of a white matt surface is 0.32.
 inline constexpr double kMinRetroreflected = 1e-3;
 
 /// Light of the lamp as a receiver with one spectral response sees it.

@@ -18,11 +18,11 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
+// Width and height, in mm, of the sheet that is shown for an infinite part if the request contains no size.
 constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
-// Ratio of the width that the picture shows to the width of the part.
+// Width that the picture shows, divided by the width of the part.
 constexpr double kMargin = 1.15;
-// Maximum luminance, in cd/m^2, of the lamp and the surroundings. OpenEXR files contain numbers up to 3.4e38.
+// Maximum luminance of the lamp and of the surroundings, in cd/m^2. OpenEXR files can store values up to 3.4e38.
 constexpr double kMaxLuminance = 1e30;
 
 Vec3 to_vec(const std::array<double, 3>& a) {
@@ -33,7 +33,7 @@ std::string text_of(const Vec3& p) {
   return fmt::format("{},{},{}", shortest(p.x()), shortest(p.y()), shortest(p.z()));
 }
 
-/// Returns the height of the entrance face at a point of the part frame that is within the outline of the part.
+/// Returns the height of the entrance face above a point in plan. The point must be within the outline of the part.
 double face_height(const design::OpticalModel& model, const Vec2& at_mm) {
   return model.entrance ? geometry::height_mm(*model.entrance, at_mm) : model.part.thickness_mm;
 }
@@ -51,7 +51,7 @@ bool is_inside(const design::OpticalModel& model, const Vec3& p) {
   return p.z() <= face_height(model, at);
 }
 
-/// Returns true if a point is on the side of the sheet where the body of the part is.
+/// Returns true if a point is on the back side of the sheet, where the body of the part is located.
 bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   if (!film.radius_mm) return p.z() <= thickness_mm;
   const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);
@@ -113,7 +113,7 @@ raytrace::CameraScene scene_of(const CameraRequest& r, const std::optional<Photo
   scene.lamp.illuminance_lx =
       lamp ? lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
   scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
-  // A plane illuminated by a half space of uniform luminance L has the illuminance pi L.
+  // A plane that is illuminated by a half space of uniform luminance L has the illuminance pi L.
   scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
   const auto [film_x_mm, film_y_mm] = film_of(r);
   if (part.period_mm) scene.film = raytrace::Film{film_x_mm, film_y_mm, r.cylinder_mm};

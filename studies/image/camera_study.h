@@ -54,7 +54,8 @@ class CameraStudy {
   static constexpr std::uint32_t kPassesToJudge = 64;
 
   /// \param discs method by which the luminance is averaged over the lamp and the pupil
-  /// \param background result of background_of(); null: the requested picture, if there is one, is read from its file
+  /// \param background result of background_of(); null: the study reads the background from the file, if one is
+  ///     requested
   /// \throw InputError if a number is out of range, if the eye or the lamp is inside the part, if light is polarised,
   /// or if a file cannot be read. Files are read before the model of the part is made.
   CameraStudy(design::Design design, CameraRequest request, raytrace::DiscAverage discs = raytrace::DiscAverage::kernel,

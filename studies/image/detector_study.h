@@ -16,12 +16,12 @@
 
 namespace retrace::studies {
 
-/// Number of rays in a pass, and maximum number of passes, if the request contains no number of rays.
+/// Number of rays of a pass and maximum number of passes, used if the request does not specify the number of rays.
 inline constexpr std::uint64_t kDetectorRaysPerPass = std::uint64_t{1} << 22;
 inline constexpr std::uint32_t kMaxDetectorPasses = 8;
-/// Fraction of the light that must be in small bins. More passes are traced until it is reached.
+/// Minimum fraction of the light in small bins. Passes are added until this fraction is reached.
 inline constexpr double kLightInSmallBins = 0.9;
-/// Maximum width of small bins, as a fraction of the width of the map.
+/// Maximum width of a bin that is regarded as small, as a fraction of the map's width.
 inline constexpr double kSmallBin = 0.01;
 
 /// Fractions of the largest value of a map below which bins count as dark.

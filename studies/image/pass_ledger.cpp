@@ -8,8 +8,8 @@
 namespace retrace::studies {
 namespace {
 
-// Results of passes that wait for an earlier pass may use this amount of memory in bytes, and at least this number of
-// passes may wait.
+// Maximum memory, in bytes, for the results of passes that wait for an earlier pass. At least kFewestAhead passes may
+// always wait.
 constexpr std::size_t kBytesAhead = std::size_t{1} << 30U;
 constexpr std::size_t kFewestAhead = 8;
 

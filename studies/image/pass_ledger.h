@@ -1,6 +1,6 @@
 #pragma once
 
-// Passes of a camera picture as tasks that several processes can share.
+// Divides a camera picture into passes, which are tasks that several processes can share.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,15 +18,16 @@
 
 namespace retrace::studies {
 
-/// Returns the number of passes after which the noise is as low as requested. A pass adds one sample to every pixel.
-/// The noise is inversely proportional to the square root of the number of passes.
+/// Estimates the number of passes after which the noise is as low as requested. Each pass adds one sample to every
+/// pixel. The noise is inversely proportional to the square root of the number of passes.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request);
 
-/// Adds the passes of a picture in ascending order of their numbers, even if they are finished in another order.
+/// Distributes the passes of a picture as tasks. Results are added in ascending order of the pass numbers, even if the
+/// passes are finished in another order.
 class PassLedger : public TaskLedger {
  public:
-  /// \param images receive the passes; the noise of the first one is compared with the request
-  /// \param after_pass function that is called after each pass; may be empty
+  /// \param images pictures to which passes are added; the noise of the first one is compared with the request
+  /// \param after_pass function that is called after each added pass; may be empty
   /// \pre all arguments outlive the object; there is at least one image
   PassLedger(const CameraRequest& request, std::vector<raytrace::CameraImage>& images, Progress* progress,
              const std::function<void()>& after_pass);
@@ -36,8 +37,8 @@ class PassLedger : public TaskLedger {
   void finish(std::uint64_t pass, const std::string& bytes) override;
   bool is_finished() override { return is_finished_; }
 
-  /// Adds the next pass.
-  /// \param pass results of the pass for all images, one after the other
+  /// Adds the next pass to all images.
+  /// \param pass results of the pass: the values of all images, one image after the other
   void add(const std::vector<double>& pass);
 
  private:
@@ -47,7 +48,7 @@ class PassLedger : public TaskLedger {
   Progress* progress_;
   const std::function<void()>& after_pass_;
   std::uint32_t goal_;
-  std::size_t max_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
+  std::size_t max_ahead_;  ///< maximum number of passes that are started before an earlier pass is added
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> given_back_;
   std::map<std::uint64_t, std::string> ahead_;

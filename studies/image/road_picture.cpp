@@ -37,7 +37,7 @@ constexpr double kNearest = 0.5;         ///< distance from the eye at which sur
 /// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 divided by the
 /// squared angle in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002).
 /// \param angle2 squared angle from the source, in rad^2
-/// \param min_angle2 squared angle below which the result is constant, in rad^2
+/// \param min_angle2 squared angle, in rad^2, that replaces all smaller values of `angle2`
 double veil_per_lx(double angle2, double min_angle2) {
   constexpr double kDegPerRad = 180.0 / pi;
   return 10.0 / (std::max(angle2, min_angle2) * kDegPerRad * kDegPerRad);
@@ -144,9 +144,9 @@ class Painter {
   /// \param polygon convex polygon in the scene
   void solid(const std::vector<Vec3>& polygon, const Surface& surface) { area(projected(polygon), surface); }
   /// Draws a reflector with black parts.
-  /// \param face convex polygons in the scene that make up the reflector
+  /// \param face convex polygons that make up the reflector, in the scene
   /// \param black convex polygons within the reflector that return no light
-  /// \param windows convex polygons within the black ones that return light
+  /// \param windows convex polygons within the black polygons that return light
   void reflector(const std::vector<std::vector<Vec3>>& face, const std::vector<std::vector<Vec3>>& black,
                  const std::vector<std::vector<Vec3>>& windows, const Light& light, const Surface& black_surface) {
     struct Fractions {

@@ -35,7 +35,7 @@ struct RoadCamera {
   geometry::Vec2 position_of(const geometry::Vec3& point) const;
   /// Returns the direction, as a unit vector, in which a position of the picture is seen.
   geometry::Vec3 direction_at(const geometry::Vec2& position) const;
-  /// Returns the direction of the centre of a pixel.
+  /// Returns the direction from the eye through the centre of a pixel.
   /// \param k index of the pixel, row by row from the top
   geometry::Vec3 direction_of(std::size_t k) const;
   /// Returns the solid angle of a pixel, in sr.

@@ -118,7 +118,7 @@ void check_on_car(const RoadScene& scene, double height_m, double lateral_m) {
                                  fixed(scene.car_tall - half.y(), 4), shortest(height_m)));
 }
 
-/// Returns the convex hull of convex polygons. A single polygon is returned unchanged.
+/// Returns the convex hull of one or more convex polygons. A single polygon is returned unchanged.
 Polygon hull_of(const std::vector<Polygon>& polygons) {
   if (polygons.size() == 1) return polygons.front();
   std::vector<Vec2> corners;

@@ -33,17 +33,18 @@ struct RoadScene {
   double pupil_diameter = 0.007;
 
   std::vector<geometry::Vec3> reflectors = {{-0.72, 0.6, 0.0}, {0.72, 0.6, 0.0}};  ///< centres
-  /// Outline of each reflector or of the sign, relative to its centre; convex, counter-clockwise. For a reflector with
-  /// notches or holes, it is the convex hull.
+  /// Outline of each reflector or of the sign, relative to the centre of the outline; convex, counter-clockwise. For
+  /// reflectors with notches or holes, it is the convex hull.
   geometry::Polygon outline = {{-0.06, -0.0125}, {0.06, -0.0125}, {0.06, 0.0125}, {-0.06, 0.0125}};
   /// Convex polygons that make up a reflector with notches or holes; empty for other reflectors.
   std::vector<geometry::Polygon> pieces = {};
-  /// Black areas within the outline of a sign, and retroreflective areas within black areas. The black line along the
-  /// border is the first black area minus the first window. The symbol consists of black areas within this window.
+  /// `black`: black areas within the outline of a sign. `windows`: retroreflective areas within the black areas. The
+  /// first black area minus the first window is the black line along the border. The other black areas are in the first
+  /// window and form the symbol.
   std::vector<geometry::Polygon> black, windows;
   double mast_height = 0.0;
   double mast_width = 0.08;
-  double car_width = 1.75, car_tall = 1.42;  ///< of the car with the reflectors
+  double car_width = 1.75, car_tall = 1.42;  ///< width and height of the car with the reflectors
 
   double lane_width = 3.5, line_width = 0.12;
   double dash_length = 4.0, dash_period = 12.0;  ///< length and period of the dashes left of the driver's lane
@@ -62,7 +63,7 @@ struct RoadScene {
   std::size_t rows = 440;
   double field_deg = 13.0;  ///< angular width of each picture; 1 to 90
 
-  /// Returns convex polygons that make up a reflector or the sign.
+  /// Returns the convex polygons that make up a reflector or the sign.
   std::vector<geometry::Polygon> face() const {
     return pieces.empty() ? std::vector<geometry::Polygon>{outline} : pieces;
   }
@@ -72,10 +73,10 @@ struct RoadScene {
   double area() const;
 };
 
-/// Returns the scene of a request. The photometric data of the lamp, the dye and the tint are not set.
+/// Returns the scene of a request, without the photometric data of the lamp, the dye and the tint.
 /// \param design_face_mm convex polygons that make up the face of a finite design; empty for an infinite design
 /// \throw InputError at the field of the request if a reflector is too large for the car, outside of the car or below
-///        the road, if two reflectors overlap, if the mast does not reach the sign, or if a sign has notches or holes
+///     the road, if two reflectors overlap, if the mast does not reach the sign, or if a sign has notches or holes
 RoadScene scene_of(const RoadRequest& request, const std::vector<geometry::Polygon>& design_face_mm);
 
 /// Returns the positions of the left and the right headlamp.

@@ -26,8 +26,8 @@ constexpr std::size_t kSpansOfRoad = 1, kSpansOfTint = 2;
 // Fraction of the progress for the computation of the colour of the light.
 constexpr double kProgressOfColour = 0.3;
 
-/// Returns the convex polygons that make up the entrance face of a finite design, in mm. Returns none for an infinite
-/// design.
+/// Returns the convex polygons that make up the entrance face of a finite design, in mm. Returns no polygons for an
+/// infinite design.
 std::vector<geometry::Polygon> face_of(const design::Design& design) {
   if (design.is_infinite()) return {};
   return geometry::entrance_polygons(design::make_model(design, materials::MaterialLibrary::shipped()).part);
@@ -72,7 +72,7 @@ std::vector<PhotometerSetting> settings_of(const RoadScene& scene, double distan
 
 /// Returns the results for one reflector.
 /// \param settings settings of the photometer for the left and the right headlamp
-/// \param readings readings with these settings
+/// \param readings readings that were measured with `settings`
 RoadReflector reflector_of(const RoadScene& scene, double distance_m, const Vec3& position,
                            std::span<const PhotometerSetting, 2> settings,
                            std::span<const PhotometerReading, 2> readings) {

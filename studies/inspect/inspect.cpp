@@ -22,8 +22,8 @@ namespace {
 // Maximum number of elements whose boundary is checked completely. For more elements, a smaller part of the same kind
 // is checked, because CGAL would need many seconds.
 constexpr double kElementsToCheck = 1000.0;
-// Distance between the triangles of the boundary that is checked and a curved entrance face, relative to the size of
-// the part.
+// Maximum distance between a curved entrance face and the triangles of the boundary to be checked, as a fraction of the
+// size of the part.
 constexpr double kCheckedError = 1e-3;
 
 /// Returns a finite part with the same elements, which is small enough for a quick check with CGAL. If the design is
@@ -61,7 +61,7 @@ std::string finding_of(const geometry::BoundaryMesh& boundary) {
                                : "crosses itself";
 }
 
-/// Returns the boundary of a part with the curved entrance face of the model, or with a plane face if there is none.
+/// Returns the closed boundary of a part. The entrance face is the curved face of the model, or plane if there is none.
 geometry::BoundaryMesh boundary_to_check(const geometry::Part& part, const design::OpticalModel& model) {
   if (!model.entrance) return geometry::closed_boundary(part);
   const double size_mm = geometry::bounding_box(part.outline).size().maxCoeff();

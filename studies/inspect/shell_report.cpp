@@ -11,10 +11,11 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Number of points of each line of the section.
+// Number of intervals into which each line of the section is divided.
 constexpr int kPointsOfLine = 200;
 
-/// Returns the fraction of power that shell `k` transmits at its middle, along the normal of its outer surface.
+/// Returns the fraction of power that shell `k` transmits at its middle, for light along the normal of its outer
+/// surface.
 double transmittance_of(const design::OpticalModel& model, std::size_t k) {
   double mean = 0.0;
   for (const design::SpectralOptics& at : model.spectral) {
@@ -28,7 +29,8 @@ double transmittance_of(const design::OpticalModel& model, std::size_t k) {
   return mean;
 }
 
-/// Returns true if angles are given only about x. They then change only the section along y.
+/// Returns true if the shells have angles about x but none about y. The angles are then visible only in the section
+/// along y.
 bool is_turned_about_x(const design::Design& design) {
   const auto any = [&](std::size_t axis) {
     return std::ranges::any_of(design.shells, [axis](const design::OuterShell& shell) {
@@ -38,7 +40,7 @@ bool is_turned_about_x(const design::Design& design) {
   return any(0) && !any(1);
 }
 
-/// Draws the section. All lines have the same range of x or y.
+/// Makes the lines of a section. All lines extend over the same range of x or y.
 class SectionLines {
  public:
   SectionLines(const design::OpticalModel& model, Eigen::Index axis)
@@ -48,7 +50,7 @@ class SectionLines {
         part.period_mm ? geometry::Rectangle{Vec2::Zero(), *part.period_mm} : geometry::bounding_box(part.outline);
     centre_ = box.centre();
     half_mm_ = 0.5 * box.size()[axis];
-    // A period of an infinite part may be much smaller than the shells.
+    // The section of an infinite part is wider than a period if a period is much smaller than the shells.
     if (part.period_mm) half_mm_ = std::max(half_mm_, 0.5 * shells_.front().outer.vertex_mm.z());
   }
 
@@ -73,7 +75,7 @@ class SectionLines {
   }
 
  private:
-  /// Heights of the entrance surface in the part frame.
+  /// Returns heights of the entrance surface in the part frame.
   struct Heights {
     explicit Heights(const design::OpticalModel& model)
         : entrance(model.entrance ? &*model.entrance : nullptr), thickness_mm(model.part.thickness_mm) {}

@@ -50,8 +50,8 @@ class LateralShiftSampler {
   }
 
  private:
-  /// Returns the k-th point of a low-discrepancy sequence on the plate (Roberts 2018, with the plastic number). For a
-  /// plate with an outline, the points of the unit square are mapped to the area inside the outline.
+  /// Returns the k-th point of a low-discrepancy sequence on the plate (Roberts 2018, with the plastic number). If the
+  /// plate has an outline, the sequence is mapped from the unit square to the area inside the outline.
   Vec2 place(int k) const {
     constexpr double plastic = 1.32471795724474602596;
     const auto part = [&](double step) { return std::fmod(0.5 + (k + 1) * step, 1.0); };
@@ -94,7 +94,7 @@ class LateralShiftSampler {
   raytrace::Optics optics_;
   Vec2 size_mm_;
   raytrace::BackSurface surface_;
-  std::optional<raytrace::EntranceSampler> sampler_;  ///< set for a plate with an outline
+  std::optional<raytrace::EntranceSampler> sampler_;  ///< has a value if the plate has an outline
 };
 
 }  // namespace

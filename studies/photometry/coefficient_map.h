@@ -24,7 +24,8 @@ CoefficientGrid resolve_grid(CoefficientGrid grid, double window_deg);
 /// components beta1 and beta2 of the entrance angle (ASTM E808, docs/theory/photometry.md). A negative entrance angle
 /// has the same meaning as its absolute value at the presentation angle plus 180 degrees.
 /// \param entrance_deg angle between the normal and the direction to the source, in (-90, 90)
-/// \param presentation_deg angle about the direction to the source; at 0, the observer is on the side of the normal
+/// \param presentation_deg angle of rotation about the direction to the source; at 0, the observer is on the side of
+///     the normal
 PhotometerSetting setting_at(double entrance_deg, double presentation_deg, double rotation_deg);
 
 /// Maps of one design, for each rotation and presentation angle.

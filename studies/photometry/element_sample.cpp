@@ -15,24 +15,25 @@ namespace {
 
 using geometry::Vec2, raytrace::ElementPortion;
 
-// Fraction of the samples that is used for elements near the border.
+// Fraction of the samples that is reserved for elements near the border.
 constexpr double kBorderFraction = 0.4;
-// Steps of an additive sequence with low discrepancy in three dimensions: powers of the inverse of the real root of
-// x^4 = x + 1 (M. Roberts, 2018).
+// Increments of a three-dimensional additive sequence of low discrepancy. They are the powers 1, 2 and 3 of 1 / x,
+// where x is the positive root of x^4 = x + 1 (M. Roberts, 2018).
 constexpr std::array<double, 3> kSequence = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-// Minimum number of samples for each term of a polynomial.
+// Minimum number of samples for each term of the fitted polynomial.
 constexpr std::size_t kSamplesPerTerm = 3;
 
 double fraction_of(double value) {
   return value - std::floor(value);
 }
 
-/// Position, wavelength and portion of an element, each in the range -1 to 1.
+/// Position, wavelength and relative portion (`fullness`) of an element, each mapped to the range -1 to 1.
 struct Coordinates {
   double x = 0.0, y = 0.0, wavelength = 0.0, fullness = 0.0;
 };
 
-/// Returns the terms of the polynomial for a number of samples. Terms of low degree come first.
+/// Returns the values of the polynomial's terms. A small number of samples restricts the polynomial to terms of low
+/// degree, which come first.
 Eigen::VectorXd terms_at(const Coordinates& at, bool is_border, std::size_t samples) {
   const auto& [x, y, u, f] = at;
   const std::vector<double> terms =
@@ -45,7 +46,7 @@ Eigen::VectorXd terms_at(const Coordinates& at, bool is_border, std::size_t samp
   return Eigen::Map<const Eigen::VectorXd>(terms.data(), static_cast<Eigen::Index>(count));
 }
 
-/// Maps elements and wavelengths to coordinates.
+/// Maps elements and wavelengths to Coordinates.
 class Scale {
  public:
   Scale(const std::vector<ElementPortion>& portions, const std::vector<std::size_t>& elements, std::size_t wavelengths)
@@ -67,7 +68,7 @@ class Scale {
   }
   /// Returns the portion of an element, divided by the largest portion.
   double fullness(std::size_t element) const { return portions_[element].fraction / largest_; }
-  /// Returns the position for two numbers from 0 to 1.
+  /// Returns a position in the bounding box of the elements, from two fractions between 0 and 1.
   Vec2 position(double u, double v) const { return lower_ + Vec2(u, v).cwiseProduct(upper_ - lower_); }
 
  private:
@@ -89,7 +90,7 @@ ElementSample::ElementSample(const std::vector<ElementPortion>& portions, const 
     if (portions[k].fraction > 0.0) strata[portions[k].is_at_border ? 1 : 0].push_back(k);
   const auto border = static_cast<std::size_t>(kBorderFraction * static_cast<double>(max_count));
   const std::array<std::size_t, 2> wanted = {strata[0].size() * weights.size(), strata[1].size() * weights.size()};
-  // Samples that one stratum does not need are used for the other one.
+  // If one stratum needs fewer samples, the other stratum gets the remaining ones.
   const std::size_t of_border = std::min(wanted[1], std::max(border, max_count - std::min(max_count, wanted[0])));
   add_stratum(portions, weights, strata[0], max_count - of_border);
   add_stratum(portions, weights, strata[1], of_border);
@@ -137,12 +138,12 @@ void ElementSample::add_stratum(const std::vector<ElementPortion>& portions, con
       else
         sums += own;
     }
-    // The deviations of one element at different wavelengths are assumed to be equal.
+    // The deviations of one element from the polynomial are assumed to be equal at all wavelengths.
     stratum.deviations += std::pow(portions[element].fraction * all_weights / scale.fullness(element), 2.0);
   }
   stratum.powers.resize(static_cast<Eigen::Index>(stratum.count), sums.size());
   stratum.fractions.resize(static_cast<Eigen::Index>(stratum.count));
-  // Samples are weighted with the light on their elements. Readings of elements that receive little light deviate more.
+  // Each sample is weighted with the light on its element, because readings of elements with little light deviate more.
   for (std::size_t k = 0; k < stratum.count; ++k) {
     const SampledElement& sample = samples_[stratum.first + k];
     const auto row = static_cast<Eigen::Index>(k);

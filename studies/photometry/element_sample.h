@@ -1,7 +1,7 @@
 #pragma once
 
-// Selects elements and wavelengths that represent all elements of a part behind a curved entrance surface, and
-// estimates sums over all of them.
+// Selects a sample of the elements of a part behind a curved entrance surface, and of the wavelengths. Estimates sums
+// over all elements and wavelengths from the readings of this sample.
 
 #include <cstddef>
 #include <vector>
@@ -10,28 +10,27 @@
 
 namespace retrace::studies {
 
-/// An element and a wavelength that are traced, with the weight of its reading in the sum over all elements and
-/// wavelengths.
+/// Pair of an element and a wavelength that is traced, and the weight of its reading in the sum over all pairs.
 struct SampledElement {
   std::size_t element = 0;
   std::size_t wavelength = 0;
   double weight = 0.0;
 };
 
-/// Sum over all elements and its standard error.
+/// Estimated sum over all elements and wavelengths, and its standard error.
 struct SampledSum {
   double value = 0.0;
   double std_error = 0.0;
 };
 
-/// Sample of the elements of a part and of the traced wavelengths. If there are few of them, all are selected.
+/// Sample of the pairs of an element and a wavelength. All pairs are selected if there are few of them.
 ///
-/// Otherwise, the readings are described by polynomials of position and wavelength, which are fitted by least squares.
-/// Elements near the border of the part are sampled and fitted separately. The sum of the polynomials over all elements
-/// is a weighted sum of the readings. Its standard error follows from the differences between readings and polynomials.
+/// Otherwise, polynomials of position and wavelength are fitted to the readings by least squares. Elements near the
+/// border of the part are sampled and fitted separately. The sum of the polynomials over all pairs is a weighted sum of
+/// the readings. Its standard error is computed from the residuals of the fit.
 class ElementSample {
  public:
-  /// \param portions portions of all elements
+  /// \param portions portions of light of all elements
   /// \param weights weights of the wavelengths
   /// \param max_count maximum number of samples, >= 16
   ElementSample(const std::vector<raytrace::ElementPortion>& portions, const std::vector<double>& weights,
@@ -39,21 +38,21 @@ class ElementSample {
 
   const std::vector<SampledElement>& samples() const { return samples_; }
   /// Estimates the sum of portion * weight * reading over all elements and wavelengths.
-  /// \param readings readings of the samples, per incident light on the portion of the element
+  /// \param readings readings of the samples, divided by the incident light on the portion of the element
   SampledSum sum(const std::vector<double>& readings) const;
 
  private:
-  /// Samples of either the elements near the border or all other elements.
+  /// Samples of one group of elements: either those near the border or all others.
   struct Stratum {
     std::size_t first = 0;  ///< index of the first sample
     std::size_t count = 0;
-    /// Values of the polynomials' terms at the samples, times the portion of the element divided by the largest
-    /// portion; empty if all elements are selected.
+    /// Matrix of the least-squares fit, with a row for each sample and a column for each term of the polynomial. Each
+    /// row is multiplied by the sample's value in `fractions`. Empty if all elements are selected.
     Eigen::MatrixXd powers;
     Eigen::MatrixXd inverse;    ///< pseudo-inverse of `powers`
-    Eigen::VectorXd fractions;  ///< portions of the samples divided by the largest portion
-    /// Variance of the sum over the single deviations of all elements from the polynomials, relative to the variance of
-    /// `fractions` times a deviation.
+    Eigen::VectorXd fractions;  ///< portions of the samples, divided by the largest portion
+    /// Contribution of the deviations of individual elements from the polynomial to the variance of the sum. It is
+    /// relative to the variance of a weighted residual of the fit.
     double deviations = 0.0;
   };
   void add_stratum(const std::vector<raytrace::ElementPortion>& portions, const std::vector<double>& weights,

@@ -89,9 +89,9 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
   }
 }
 
-/// Removes the obstacle of a curved entrance surface if its diffraction can be computed behind tangent planes. This
-/// needs an exact surface instead of a mesh.
-/// \param model null: not known yet; an exact surface is assumed
+/// Clears the flag of a curved entrance surface, which excludes the exact engine, if beams can be traced through
+/// tangent planes of the surface. This requires an exact surface instead of a mesh, and that diffraction is requested.
+/// \param model null if it is not known yet; the surface is then assumed to be exact
 void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySettings& request,
                           raytrace::EngineFacts& facts) {
   const bool is_mesh = model != nullptr && model->entrance &&
@@ -100,8 +100,8 @@ void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySet
     facts.has_curved_entrance = false;
 }
 
-/// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
-/// meshes. Also returns 0 for curved entrance faces and lenses, because they divide the light into cells of their own.
+/// Returns the width of the cells at whose edges light is diffracted. Returns 0 if the width is unknown, for example
+/// for meshes. Also returns 0 behind curved entrance faces and lenses, which divide the light into other cells.
 double width_of_cells_mm(const design::Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
   if (!design.elements() || design.entrance || design.has_deflecting_shells()) return 0.0;

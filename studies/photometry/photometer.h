@@ -52,7 +52,7 @@ struct PhotometerReading {
   PhotometricDirection direction;
   std::vector<double> map_r_a;
   bool lacks_diffraction = false;  ///< true: diffraction is significant but not included in the reading
-  /// Model of a curved entrance surface; empty behind a plane entrance face, and for readings by rays.
+  /// Tangent-plane model of a curved entrance surface. Empty behind a plane entrance face, and if rays are traced.
   std::optional<EntranceModel> entrance_model;
 };
 
@@ -67,9 +67,8 @@ class Photometer {
              PhotometricResponse response = PhotometricResponse::y_bar);
 
   /// Measures all settings. Returns the readings in the order of the settings, or nothing if the measurement was
-  /// cancelled. The angles of the settings refer to the reference axis of the design.
-  /// \throw InputError if the light of a setting comes from behind the plane z = 0 of a part with an inclined entrance
-  ///     face
+  /// cancelled. The angles of the settings are relative to the reference axis of the design.
+  /// \throw InputError if the entrance face is inclined and the light of a setting comes from behind the plane z = 0
   std::optional<std::vector<PhotometerReading>> measure(const std::vector<PhotometerSetting>& requested,
                                                         Progress* progress, const Cancellation* cancel) const;
 
@@ -243,28 +242,28 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure_in_one_light(const std::vector<PhotometerSetting>& settings,
                                                                      Progress* progress,
                                                                      const Cancellation* cancel) const;
-  /// Returns the settings with the reference axis of the design.
+  /// Returns copies of the settings that contain the reference axis of the design.
   /// \throw InputError if the light of a setting comes from behind the plane z = 0
   std::vector<PhotometerSetting> with_reference_axis(std::vector<PhotometerSetting> settings) const;
-  /// \param weights weights of the elements of `pieces`
+  /// \param weights weights of the readings in `pieces`
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces,
                                const std::vector<double>& weights) const;
-  /// Returns true if light is traced as beams behind tangent planes of a curved entrance surface.
+  /// Returns true if light is traced as beams through tangent planes of a curved entrance surface.
   bool uses_tangent_planes() const { return is_exact() && model_.entrance.has_value(); }
-  /// Light of one sampled element at one wavelength, for all settings of a direction of light.
+  /// Reading of one sampled element at one wavelength, for all settings with the same direction of light.
   struct ElementReading;
-  /// Measures all settings behind a curved entrance surface by beams at a sample of the elements. Returns nothing if
-  /// the measurement was cancelled.
+  /// Measures all settings behind a curved entrance surface. Beams are traced at a sample of the elements. Returns
+  /// nothing if the measurement was cancelled.
   std::optional<std::vector<PhotometerReading>> measure_behind_surface(const std::vector<PhotometerSetting>& settings,
                                                                        Progress* progress,
                                                                        const Cancellation* cancel) const;
   ElementReading measure_element(const std::vector<PhotometerSetting>& settings, const EquivalentDirections& directions,
                                  const raytrace::ElementLight& elements, std::size_t element, std::size_t wavelength,
                                  bool compares_rays, const Cancellation* cancel) const;
-  /// Adds the light that the curved entrance surface reflects at its outer side to the sum over all wavelengths.
+  /// Adds the light that the curved entrance surface reflects at its outer side. `sum` is the sum over all wavelengths.
   void add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
                               const raytrace::ElementLight& elements, WavelengthReading& sum) const;
-  /// Returns the transmittance of the body at one wavelength, along the usual path of returned light.
+  /// Returns the transmittance of the body at one wavelength, for the typical length of the path of returned light.
   double body_transmittance(std::size_t wavelength) const;
   std::size_t max_element_samples(const std::vector<PhotometerSetting>& settings) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated

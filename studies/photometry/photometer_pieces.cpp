@@ -105,7 +105,7 @@ double scattered_power(const raytrace::ReturnedBeam& beam) {
 }  // namespace
 
 /// Returns true if beams below the cut-off power are resampled instead of truncated. This requires the engine `auto`,
-/// plane facets, a plane entrance face, and that all light is traced.
+/// light that is traced as beams, plane facets and a plane entrance face.
 bool Photometer::resamples_weak() const {
   return tracing_ == Tracing::beams && request_.engine == raytrace::Engine::automatic && !facts_.has_form &&
          !model_.entrance;

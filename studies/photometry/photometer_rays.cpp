@@ -33,7 +33,7 @@ Photometer::WavelengthReading Photometer::measure_by_rays(const PhotometerSettin
   WavelengthReading piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
-  // Intensities are relative to the power on the area of the part, which differs from the incident power behind lenses.
+  // Intensities refer to the power on the area of the part. Behind lenses, this power differs from the incident power.
   for (std::vector<double>* const sums : {&traced.score, &traced.score_error})
     for (double& value : *sums) value *= traced.beam_area_ratio;
   piece.rre = traced.cones.back().rre;

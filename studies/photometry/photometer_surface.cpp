@@ -1,5 +1,5 @@
-// Members of Photometer that measure behind a curved entrance surface. The light of single elements is traced as beams
-// through tangent planes of the surface (docs/theory/fronts.md).
+// Members of Photometer that measure behind a curved entrance surface. The light of each sampled element is traced as
+// beams through a tangent plane of the surface (docs/theory/fronts.md).
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -21,28 +21,30 @@ using geometry::Vec3, raytrace::ReturnFrame;
 
 // Maximum number of pairs of an element and a wavelength that are traced for one direction of light.
 constexpr std::size_t kSamples = 96;
-// Maximum number for preliminary values and searches.
+// Maximum number of pairs in preliminary measurements and in searches, where kSamples would take too long.
 constexpr std::size_t kFewSamples = 32;
-// Minimum number for readings at many observation angles and for maps, which need much time for each sample.
+// Minimum number of pairs. It applies to maps and to settings with many observation angles, for which each pair takes
+// long.
 constexpr std::size_t kMinSamples = 24;
-// Number of observation angles that take as much time as the map of one direction.
+// Number of observation angles that take as much computing time as the map of one direction.
 constexpr double kAnglesOfMap = 8.0;
-// Number of observation angles up to which kSamples samples are traced.
+// Maximum number of observation angles for which the full number of pairs is traced.
 constexpr double kAnglesOfSamples = 8.0;
-// Every n-th sample is compared with rays.
+// Every kComparedSamples-th sample is compared with rays.
 constexpr std::size_t kComparedSamples = 6;
-// Minimum power of beams that are compared with rays, as a fraction of the light that an element would return if the
-// body absorbed light but no other light were lost.
+// Minimum power of beams that are compared with rays. It is relative to the light that an element would return if
+// absorption in the body were the only loss.
 constexpr double kMinComparedPower = 1e-3;
-// Maximum angle between rays and the model of tangent planes, as a fraction of the sum of the radii of source and
-// receiver. The readings then change by less than about 1 %.
+// Maximum angle between exact rays and the tangent-plane model, as a fraction of the sum of the radii of source and
+// receiver. At this limit, readings are wrong by less than about 1 %.
 constexpr double kMaxAngleFraction = 0.1;
-// Minimum trace of ReturnedBeam::entry_from_exit of a mirror image.
+// Minimum trace of ReturnedBeam::entry_from_exit for beams that belong to a mirror image.
 constexpr double kMinTraceOfMirror = 1.0;
-// Number of points along each axis at which the outer reflection of the surface is sampled for maps and for the RRE.
+// Number of points along each axis at which the reflection at the outer side of the surface is sampled, for maps and
+// RRE.
 constexpr std::size_t kReflectionColumns = 256;
 
-/// Returns the frame of a setting in the coordinates of the traced light.
+/// Returns the frame of a setting, mapped to the equivalent direction of light that is traced.
 ReturnFrame traced_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
   const ReturnFrame frame = frame_of(setting);
   return {shared.mapped(frame.to_source), shared.mapped(frame.right), shared.mapped(frame.up)};
@@ -62,7 +64,8 @@ bool is_within(const Vec3& direction, const Vec3& axis, double half_angle_deg) {
   return (direction - axis).norm() <= 2.0 * std::sin(0.5 * Angle::from_deg(half_angle_deg).rad()) * (1.0 + 1e-9);
 }
 
-/// Estimates a quantity from the readings of all samples.
+/// Estimates the sum of a quantity over all elements and wavelengths.
+/// \param value returns the quantity for the reading of one sample
 template <class Readings, class Value>
 SampledSum sum_of(const ElementSample& sample, const Readings& readings, const Value& value) {
   std::vector<double> values;
@@ -73,7 +76,7 @@ SampledSum sum_of(const ElementSample& sample, const Readings& readings, const V
 }  // namespace
 
 struct Photometer::ElementReading {
-  std::vector<WavelengthReading> pieces;  ///< one for each setting of the direction, per light on the element
+  std::vector<WavelengthReading> pieces;  ///< one for each setting, divided by the light on the element
   raytrace::TangentError error;
   bool is_complete = false;
 };
@@ -112,7 +115,7 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
       common.map_per_sr.assign(setting.map_columns * setting.map_columns, 0.0);
       reading.pieces.push_back(common);
     }
-    // The light of an element without a tangent plane is missing in the reading.
+    // If an element has no tangent plane, its light is missing in the reading.
     if (!scene) reading.error.add_failure();
     reading.is_complete = true;
     return reading;
@@ -160,7 +163,8 @@ Photometer::ElementReading Photometer::measure_element(const std::vector<Photome
     for (const double observation_deg : setting.observation_deg) {
       const Vec3 receiver = towards_receiver(frame, observation_deg);
       const double seen = field.intensity(receiver, kernel_).per_sr;
-      // Light that leaves the surroundings is assumed to return from other elements with the same efficiency.
+      // Light that leaves the excerpt around an element meets other elements. They are assumed to return it with the
+      // same efficiency.
       const double missing = (common.rre > 0.0 ? truncated / common.rre * seen : 0.0) + beside * seen +
                              unplaced * field.scattered_per_sr(receiver, kernel_);
       piece.per_sr.push_back(factor * seen);
@@ -225,7 +229,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface
   std::vector<double> weights = weights_;
   for (std::size_t w = 0; w < weights.size(); ++w) weights[w] *= body_transmittance(w);
   std::vector<Direction> directions;
-  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // direction and sample
+  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // indices of direction and sample
   for (EquivalentDirections& alike : group_equivalent_settings(settings)) {
     Direction& one = directions.emplace_back();
     one.alike = std::move(alike);
@@ -239,7 +243,8 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface
     one.readings.resize(one.sample->samples().size());
     for (std::size_t k = 0; k < one.readings.size(); ++k) tasks.emplace_back(directions.size() - 1, k);
   }
-  // Samples that are compared with rays come first. If the model fails for one of them, the others are not traced.
+  // Samples that are compared with rays come first. If the comparison fails for one of them, no further samples are
+  // traced.
   const auto compared = [](const std::pair<std::size_t, std::size_t>& task) {
     return task.second % kComparedSamples == 0;
   };

@@ -224,14 +224,14 @@ struct PhotometryStudy::Prepared {
   design::Design design;
   PhotometrySettings request;
   std::unique_ptr<Photometer> photometer;
-  std::unique_ptr<Photometer> compared;  ///< photometer of the compared design, or null
+  std::unique_ptr<Photometer> compared;  ///< photometer of the design for comparison, or null
   MeasurementPlan plan;
 };
 
 namespace {
 
-/// Checks that light is traced as beams if the engine "exact" is requested.
-/// \throw InputError if the faces of the design scatter light
+/// Checks that light is traced as beams if the request selects the engine "exact".
+/// \throw InputError if it is not, because faces of the design scatter light
 void require_exact(const Photometer& photometer, const design::Design& design, raytrace::Engine engine) {
   if (engine == raytrace::Engine::exact && !photometer.is_exact())
     throw InputError(
@@ -241,7 +241,7 @@ void require_exact(const Photometer& photometer, const design::Design& design, r
             design.source_name(), reference({"engine"})));
 }
 
-/// Adds a warning if diffraction is requested, but the photometer leaves it out.
+/// Adds a warning if diffraction is requested but cannot be computed.
 void warn_of_diffraction(const Photometer& photometer, const design::Design& design, const PhotometrySettings& request,
                          Warnings& warnings) {
   if (request.diffraction && !photometer.has_diffraction())
@@ -355,7 +355,7 @@ bool add_design_maps(Photometer photometer, std::size_t design, Progress* progre
 
 /// Adds the maps over entrance and observation angle if they are requested. Returns false if the computation was
 /// cancelled; the result then has no such maps.
-/// \param compared photometer of the compared design, or null
+/// \param compared photometer of the design with which the result is compared, or null
 bool add_coefficient_maps(const Photometer& photometer, const Photometer* compared, Progress* progress,
                           const Cancellation* cancel, PhotometryResult& result) {
   if (!result.request.map_grid) return true;
@@ -442,7 +442,8 @@ bool add_colour(const Photometer& photometer, Progress* progress, const Cancella
   return result.colour.has_value();
 }
 
-/// Returns the model of a curved entrance surface with the largest differences of all readings.
+/// Combines the models of a curved entrance surface from all readings. Returns the largest difference of each kind, or
+/// nothing if no reading has a model.
 std::optional<EntranceModel> worst_model(const std::vector<PhotometerReading>& readings) {
   std::optional<EntranceModel> worst;
   for (const PhotometerReading& reading : readings) {

@@ -140,7 +140,7 @@ struct FarFieldMap {
   double h_deg = 0.0;
   double half_width_deg = 0.0;
   std::size_t columns = 0;  ///< number of columns, and of rows
-  std::vector<double> r_a;  ///< values row by row, bottom row first, as seen from the source
+  std::vector<double> r_a;  ///< values as seen from the source, row by row, bottom row first
 };
 
 /// Coefficient of retroreflection R_A of one design over entrance and observation angle, at one rotation of the part
@@ -159,7 +159,7 @@ struct CoefficientMap {
   std::size_t index(std::size_t entrance, std::size_t observation) const {
     return entrance * observation_deg.size() + observation;
   }
-  /// Returns values with the indices [entrance][observation].
+  /// Arranges values of the map by angles, with the indices [entrance][observation].
   /// \param values `r_a` or `std_error`
   std::vector<std::vector<double>> rows(const std::vector<double>& values) const;
 };
@@ -183,15 +183,15 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
-/// Model of tangent planes for a curved entrance surface (docs/theory/fronts.md), and its differences from rays that
-/// are refracted at the exact surface.
+/// Properties of the tangent-plane model of a curved entrance surface (docs/theory/fronts.md): the number of traced
+/// elements, and the differences between the model and rays refracted at the exact surface.
 struct EntranceModel {
   std::size_t elements = 0;           ///< number of elements of the part that receive light
-  std::size_t traced_elements = 0;    ///< number of elements that were traced; the others follow by interpolation
+  std::size_t traced_elements = 0;    ///< number of traced elements; the others are interpolated
   double path_rms_waves = 0.0;        ///< root mean square difference of optical paths, in wavelengths
-  double angle_rms_arcmin = 0.0;      ///< root mean square angle between the directions of returned light
-  double max_angle_arcmin = 0.0;      ///< maximum angle between these directions
-  double allowed_angle_arcmin = 0.0;  ///< readings lack diffraction if `max_angle_arcmin` is above this limit
+  double angle_rms_arcmin = 0.0;      ///< root mean square angle between light of the model and rays
+  double max_angle_arcmin = 0.0;      ///< maximum angle between light of the model and rays
+  double allowed_angle_arcmin = 0.0;  ///< if `max_angle_arcmin` is larger, diffraction is left out
 };
 
 /// Reasons, other than obstacles of the exact engine, why photometric readings do not include diffraction.
@@ -251,8 +251,8 @@ struct PhotometryResult {
   std::string engine;
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
-  /// Model of a curved entrance surface, with the largest differences of all directions; empty for a plane entrance
-  /// face and for rays.
+  /// Model of a curved entrance surface with the largest differences of all readings. Empty for a plane entrance face
+  /// and if rays are traced.
   std::optional<EntranceModel> entrance_model;
   std::vector<PhotometricPoint> points;
   std::vector<PhotometricPoint> measured;  ///< readings at the test points, before lower bounds replaced some of them
@@ -271,7 +271,7 @@ struct PhotometryResult {
   /// requested, or if the run was cancelled before all of them were finished.
   std::vector<CoefficientMap> coefficient_maps;
   std::size_t map_directions = 0;         ///< number of directions of light of all maps
-  std::size_t traced_map_directions = 0;  ///< number of traced directions; symmetric directions share one
+  std::size_t traced_map_directions = 0;  ///< number of traced directions; equivalent ones count once
   double elapsed_s = 0.0;
   Warnings warnings;
   bool complete = true;

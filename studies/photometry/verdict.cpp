@@ -1,4 +1,4 @@
-// Verdicts on readings and on the area of a part; they are declared in photometry.h.
+// Verdicts on readings and on the area of a part. The functions are declared in photometry.h.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace retrace::studies {
 namespace {
 
-// Distance to a limit, in standard errors, below which a reading is undetermined.
+// Minimum distance between a reading and a limit, in standard errors, for a definite verdict.
 constexpr double kErrorsOfAMargin = 2.0;
 
 }  // namespace

@@ -99,7 +99,7 @@ class FractionQuantity final : public Quantity {
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
     if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::min) return std::nullopt;
-    if (candidate.design().entrance) return std::nullopt;  // derivatives are computed only for plane entrance faces
+    if (candidate.design().entrance) return std::nullopt;  // derivatives require a plane entrance face
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (!raytrace::may_be_exact(candidate.analysis().engine)) return std::nullopt;
     request.engine = raytrace::engine_name(raytrace::Engine::exact);
@@ -175,20 +175,21 @@ double tool_fit_mm(const Candidate& candidate) {
   return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
 }
 
-/// Returns the design of a candidate that is an array of equal elements, flat or on a substrate.
-/// \throw InputError for designs with balls, solids or zones
+/// Returns the design of a candidate, which must be an array of equal elements, flat or on a substrate.
+/// \throw InputError if the design has balls, solids or zones
 const design::Design& elements_of(const Candidate& candidate, const std::string& name) {
   design::require_supported(candidate.design(), {.what = name, .entrances = true, .wet_backs = true});
   return candidate.design();
 }
 
-/// Returns the design as elements_of() does. Designs with a curved entrance face are not allowed.
+/// Returns the design of a candidate under the conditions of elements_of(). In addition, the entrance face must be
+/// plane.
 const design::Design& elements_behind_plane(const Candidate& candidate, const std::string& name) {
   design::require_supported(candidate.design(), {.what = name, .wet_backs = true});
   return candidate.design();
 }
 
-/// Returns the thickness of the part from the lowest point of the back to the highest point of the entrance face.
+/// Returns the distance along z between the lowest point of the back and the highest point of the entrance face.
 double lens_thickness_mm(const Candidate& candidate) {
   const geometry::Part& part = candidate.part();
   if (!candidate.design().entrance) return part.element_depth_mm + part.thickness_mm;

@@ -46,8 +46,8 @@ Vec3 centre_of_face(const geometry::Part& part);
 /// Computes the placement of a source. The x axis of an aimed source is the part's x axis, projected perpendicular to
 /// the source's z axis. If the x axis of the part is parallel to this z axis, the part's y axis is used instead. If
 /// nothing is requested, the frame of the source is the part frame.
-/// \param in_front_mm height in front of the entrance face that a source at the default distance must leave free, for
-///     example for shells
+/// \param in_front_mm minimum height above the entrance face of a source at the default distance; this keeps the source
+///     in front of shells, for example
 /// \pre each value is allowed by itself (see RaysRequest)
 /// \throw InputError if the source would be aimed at its own position
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part, double in_front_mm = 0.0);

@@ -197,8 +197,8 @@ raytrace::Stokes mapped(raytrace::Stokes stokes, const SharedDirection& to_trace
   return raytrace::in_source_axes({stokes, back.mapped(raytrace::source_axis(to_traced.mapped(at)))}, at);
 }
 
-/// Sets the results of a direction from those of an equivalent direction that was traced.
-/// \param is_shared false if the direction is the traced one itself, see Direction::is_shared
+/// Sets the results of a direction to those of an equivalent direction that was traced.
+/// \param is_shared see Direction::is_shared; false if `direction` is the traced direction itself
 void set_results(const Direction& traced, const SharedDirection& shared, bool is_shared, Direction& direction) {
   const RrePoint at = direction.at;
   direction = traced;

@@ -16,9 +16,10 @@ namespace {
 constexpr int kGrid = 24;                    // number of entry points along an element
 constexpr std::size_t kPathsEach = 3;        // number of kinds of paths that are shown for each direction of light
 constexpr std::size_t kMaxTriangles = 4000;  // maximum number of triangles of a mesh that is shown
-// Maximum number of triangles of the back of a part with a curved entrance face. Above it, a plane back is shown.
+// Maximum number of triangles of the back of a part with a curved entrance face. If it is exceeded, the back is shown
+// as a plane.
 constexpr std::size_t kMaxBackTriangles = 20'000;
-// Maximum distance between the triangles that are shown and a curved entrance face, as a fraction of the part's size.
+// Maximum distance between a curved entrance face and the displayed triangles, as a fraction of the part's size.
 constexpr double kShownError = 1e-4;
 
 geometry::Rectangle element_box(const geometry::Element& element) {
@@ -51,7 +52,7 @@ FewElements few_elements(const design::Design& design, double elements) {
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
   if (!design.elements()) return few;
   small.shape = design::ElementArray{design.part(), {}, {}};
-  if (design.entrance) return few;  // the face belongs to the whole part
+  if (design.entrance) return few;  // the face extends over the whole part, so that all elements are shown
   geometry::PartSpec& spec = small.part();
   const geometry::Vec2 size = element_box(spec.element).size();
   if (spec.array.arrangement != geometry::Arrangement::single) {
@@ -77,8 +78,8 @@ FewElements few_elements(const design::Design& design, double elements) {
   return few;
 }
 
-/// Returns the edges between triangles that are not in one plane. Edges within the entrance face are omitted, because a
-/// curved face is smooth.
+/// Returns the edges between triangles that are in different planes. Edges within the entrance face are omitted,
+/// because a curved face is smooth.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;
@@ -119,7 +120,7 @@ geometry::BoundaryMesh boundary_of_part(const geometry::Part& part) {
   return mesh;
 }
 
-/// Returns a part with a plane back.
+/// Returns a copy of a part in which the back is replaced by the plane z = 0.
 geometry::Part with_plane_back(const geometry::Part& part) {
   geometry::SurfacePatch back;
   for (const geometry::Vec2& p : part.outline) back.vertices.emplace_back(p.x(), p.y(), 0.0);
@@ -136,8 +137,8 @@ geometry::Part with_plane_back(const geometry::Part& part) {
   return plane;
 }
 
-/// Returns the boundary of a part with a curved entrance face.
-/// \param remarks receives differences from the design
+/// Returns the boundary to be shown for a part with a curved entrance face.
+/// \param remarks descriptions of the differences between the displayed part and the design are added here
 geometry::BoundaryMesh boundary_of_curved_part(const design::OpticalModel& model, std::vector<std::string>& remarks) {
   const geometry::Part& part = model.part;
   const double error_mm = kShownError * geometry::bounding_box(part.outline).size().maxCoeff();

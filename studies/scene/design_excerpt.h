@@ -36,9 +36,9 @@ inline constexpr double kSceneElements = 4.0;
 /// plate before it hits the elements.
 inline constexpr double kLiveElements = 6.0;
 
-/// A few elements of a design for display. Their plate is not thicker than the elements are wide. Rough facets are
-/// shown as smooth. A part with a curved entrance face is displayed as a whole. The displayed face consists of
-/// triangles, but light paths are refracted at the exact face.
+/// A few elements of a design for display. The plate behind the elements is at most as thick as the elements are wide.
+/// Rough facets are displayed as smooth facets. A part with a curved entrance face is displayed as a whole. Its face is
+/// displayed as triangles, but light paths are refracted at the exact face.
 class DesignExcerpt {
  public:
   /// \param elements maximum number of elements along a side of an array

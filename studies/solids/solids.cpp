@@ -69,7 +69,7 @@ void measure(Solid& solid) {
   solid.is_manifold = geometry::is_closed_manifold(solid.mesh);
 }
 
-/// Checks that the request agrees with the entrance face of the design.
+/// Checks that the options of the request are allowed for the entrance face of the design.
 void check_entrance(const design::Design& design, SolidKind what, const SolidRequest& request) {
   if (!design.entrance) {
     if (request.surface_error_mm)
@@ -112,7 +112,7 @@ geometry::Part part_to_write(const design::Design& design, SolidKind what) {
   return part;
 }
 
-/// Sets the boundary of a part, with the curved entrance face of the design if it has one.
+/// Sets the boundary of a solid to that of a part, including the curved entrance face of the design if it has one.
 void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request) {
   solid.elements_full = part.elements_full;
   solid.elements_partial = part.elements_partial;

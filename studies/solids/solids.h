@@ -30,8 +30,7 @@ struct Solid {
   design::Design design;
   SolidKind what = SolidKind::array;
   double block_mm = 0.0;  ///< thickness of a mould below its deepest point; 0 for other solids
-  /// Largest distance along z between the triangles of a curved entrance face and the exact surface. Not set for a
-  /// plane face and for moulds.
+  /// Maximum distance along z between a curved entrance face and its triangles. Not set for plane faces and for moulds.
   std::optional<double> surface_error_mm;
   geometry::BoundaryMesh mesh;
   std::int64_t elements_full = 0;
@@ -44,13 +43,13 @@ struct Solid {
   Warnings warnings;
 };
 
-/// Distance along z between the triangles of an exact entrance surface and the surface that is allowed by default.
+/// Default of the permitted distance along z between an exact entrance surface and its triangles.
 inline constexpr double kSurfaceErrorMm = 0.001;
 
-/// Builds the closed boundary of the requested solid. Its facets are plane and smooth: only the angle errors and the
-/// edges of the design's table [surface] are used. A curved entrance face consists of triangles.
+/// Builds the closed boundary of the requested solid. Its facets are plane and smooth: of the design's table [surface],
+/// only the angle errors and the edges are used. A curved entrance face is replaced by triangles.
 /// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, if
-/// the solid has more than kMaxSolidElements elements, or if one element is requested behind a curved entrance face
+///     the solid has more than kMaxSolidElements elements, or if one element is requested behind a curved entrance face
 Solid make_solid(const design::Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -47,11 +47,11 @@ constexpr double kMaxElements = 2e6;
 constexpr std::size_t kMaxZoneElements = 2'000'000;
 /// Tolerance, in mm, of the check that the tool is not wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
-/// Maximum relative difference between the lengths of an array and the size of its outline.
+/// Maximum relative difference between the lengths of an array and the size of its outline that counts as rounding.
 constexpr double kSameLength = 1e-9;
 constexpr std::size_t kMaxChips = 100;
-/// Maximum number of corners of one border of an outline, maximum number of borders, and maximum number of corners of
-/// the polygons that replace all borders.
+/// Maximum number of corners of each border, maximum number of borders, and maximum total number of polygon corners
+/// that replace all borders of an outline.
 constexpr std::size_t kMaxBorderCorners = 2000;
 constexpr std::size_t kMaxBorders = 101;
 constexpr double kMaxPolygonCorners = 2000.0;
@@ -521,7 +521,7 @@ void check_substrate(const Job& job, const Refuse& refuse) {
   }
 }
 
-/// Checks the borders of the outline, and that the array has the size of the outline.
+/// Checks the borders of the outline, and checks that the lengths of the array are the size of the outline.
 void check_borders(const Job& job, const Refuse& refuse) {
   double corners = 0.0;
   for (std::size_t k = 0; k < job.outline->borders.size(); ++k) {
@@ -675,7 +675,7 @@ Job parse_job(std::string_view text, const std::string& source_name) {
   job.warnings = schema::renamed_keys(*job.document);
   job.source = source_name;
   if (job.outline) {
-    std::optional<geometry::OutlineFault> fault;  // check_outline() has found no fault
+    std::optional<geometry::OutlineFault> fault;  // remains empty, because check_outline() has found no fault
     job.array.outline = std::make_shared<const geometry::PlanRegion>(plan_of_outline(job, fault));
   }
   return job;

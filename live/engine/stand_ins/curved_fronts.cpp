@@ -1,5 +1,5 @@
-// Replaces entrance surfaces of turned parts and meshes by functions that report an error. Such surfaces are read from
-// files, which the live page does not have. Meshes also need Embree.
+// Stand-ins for functions that make entrance surfaces from files or meshes. They report an error, because the live page
+// cannot read files and has no Embree, which meshes need. Exact surfaces are traced as usual.
 #include "design/entrance_file.h"
 #include "live/engine/stand_ins/absent.h"
 #include "raytrace/faces/height_field.h"

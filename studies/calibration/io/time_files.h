@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads tables of program times, and writes the results of a calibration with these times.
+// Reads tables of the run times of NC programs, and writes the results of a calibration that is based on them.
 
 #include <filesystem>
 #include <string>

@@ -26,17 +26,18 @@ constexpr double kElementsOfRow = 8.0;
 /// Maximum number of rows of all zones together. It limits the number of regions in a design file.
 constexpr double kMaxRows = 120.0;
 
-/// Returns the coordinate in a rectangle below which a fraction of the part's area within the rectangle is located.
-/// \param outline outline of the part, or null for a rectangle
+/// Returns the coordinate for which a given fraction of the part's area within a rectangle has smaller coordinates.
+/// \param outline outline of the part, or null for a rectangular part
+/// \param axis 0: coordinate x; 1: coordinate y
 double coordinate_in(const geometry::PlanRegion* outline, const Rectangle& room, Eigen::Index axis, double fraction) {
   if (outline == nullptr) return room.lower[axis] + fraction * room.size()[axis];
   return geometry::coordinate_of_area_fraction(*outline, room, axis, fraction);
 }
 
 /// Divides a rectangle into blocks for the zones from `first` to `end`. The zones are split into two groups of about
-/// the same area. The rectangle is split across its longer side, and both halves are divided in the same manner.
+/// the same area. The rectangle is split across its longer side, and each half is divided in the same manner.
 /// \param shares fractions of the area of all zones
-/// \param outline outline of the part, or null for a rectangle
+/// \param outline outline of the part, or null for a rectangular part
 void add_blocks(const std::vector<double>& shares, std::size_t first, std::size_t end, const Rectangle& room,
                 const geometry::PlanRegion* outline, std::vector<std::vector<Rectangle>>& regions) {
   if (end - first == 1) {
@@ -65,7 +66,7 @@ std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares,
 
 /// Divides the part into rows and assigns them to the zones in turn.
 /// \param element_mm maximum extent of an element along y
-/// \param outline outline of the part, or null for a rectangle
+/// \param outline outline of the part, or null for a rectangular part
 std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm,
                                             const geometry::PlanRegion* outline) {
   const double least = *std::ranges::min_element(shares);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the dye of a part in a picture.
+// Reads the dye with which the part in a picture is coloured.
 
 #include <string>
 
@@ -8,9 +8,9 @@
 
 namespace retrace::studies {
 
-/// Returns the spectral absorption of a dye per mm. Empty for "none".
+/// Returns the absorption coefficient of a dye per mm as a function of wavelength. The result is empty for "none".
 /// \param dye "none", "red", "amber" or the path of a file
-/// \throw InputError at the field `dye` if it is neither a known name nor a readable file
+/// \throw InputError at the field `dye` if it is neither one of these names nor a readable file
 materials::SpectralCurve read_dye(const std::string& dye);
 
 }  // namespace retrace::studies

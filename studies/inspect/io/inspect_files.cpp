@@ -76,7 +76,7 @@ nlohmann::ordered_json shells_json(const Inspection& i) {
   return json;
 }
 
-/// Returns the lines of the report about the shells in front of the part.
+/// Returns the lines of the report that describe the shells in front of the part.
 std::string shells_text(const Inspection& i) {
   std::string text;
   if (!i.shells) return text;

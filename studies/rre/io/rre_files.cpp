@@ -212,7 +212,7 @@ std::string rre_json(const RreResult& result) {
 
 std::string rre_csv(const RreResult& result) {
   CsvWriter csv;
-  // The account of shells, the last one, has a column only if it is not empty.
+  // The last account contains light that shells reflect. Its column is written only if at least one value is not 0.
   const bool has_shells = std::ranges::any_of(
       result.points, [](const RrePoint& p) { return p.ledger[raytrace::Account::shell_reflected] != 0.0; });
   const std::size_t accounts =
