@@ -89,7 +89,8 @@ TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
       EXPECT_NEAR(formula["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
 }
 
-// A surface that is given by its kind is the turned part of the same surface, along the same random numbers.
+// A surface given by `kind` and a turned part with the same surface give the same results, because the rays use the
+// same random numbers.
 TEST_F(Entrance, KindIsTheTurnedPartOfTheSameSurface) {
   const std::string prisms =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
@@ -297,7 +298,7 @@ TEST_F(Entrance, PhotometryTakesIt) {
   }
 }
 
-/// Returns a design of cube corners of 3 mm behind the turned surface `lens.toml`.
+/// Returns a design with cube corners (aperture 3 mm) behind the turned surface `lens.toml`.
 std::string cubes(double error_arcmin, const std::string& front = kFront) {
   return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 3\n[array]\narrangement = \"honeycomb\"\nx_length_mm = "
          "16\ny_length_mm = 12\n[surface]\ndihedral_error_arcmin = " +
@@ -337,7 +338,8 @@ TEST_F(CurvedPhotometry, HasAVerdictBehindALens) {
   for (const Json& point : json["points"]) EXPECT_LT(point["std_error_mcd_per_lx"].get<double>(), 0.05 * bright);
 }
 
-// Over wide discs, diffraction hardly matters. Beams behind tangent planes then agree with rays through the surface.
+// If the discs of source and receiver are wide, diffraction has little effect. Beams behind tangent planes then agree
+// with rays through the surface.
 TEST_F(CurvedPhotometry, AgreesWithRaysOverWideDiscs) {
   folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -300\n", {}, 11.0));
   const Arguments wide = {"--source-arcmin=60", "--receiver-arcmin=60", "--window-deg=3"};
@@ -404,7 +406,8 @@ struct ReadSolid {
   double volume_mm3 = 0.0;
 };
 
-/// Reads a binary STL file without the reader of the program. Vertices are equal if their coordinates are.
+/// Reads a binary STL file without the reader of the program. Vertices with equal coordinates are treated as one
+/// vertex.
 ReadSolid read_binary_stl(const std::string& text) {
   using Corner = std::array<float, 3>;
   ReadSolid solid;
@@ -428,7 +431,8 @@ ReadSolid read_binary_stl(const std::string& text) {
   return solid;
 }
 
-// The volume is that of the prisms and that below the sphere: the integral of the height over the rectangle.
+// The volume is the sum of two volumes: that of the prisms, and the integral of the height of the sphere over the
+// rectangle.
 TEST_F(Entrance, ExportsAreClosedSolids) {
   folder_.write("lens.toml", turned(kCap));
   folder_.write("design.toml", kPrisms + kFront + kBody);
@@ -465,7 +469,8 @@ TEST_F(Entrance, ExportsAreClosedSolids) {
   EXPECT_EQ(mould(), behind);
 }
 
-// A mesh of the surface is exported with its own triangles. The mesh that `retrace turn` writes is the counterpart.
+// An entrance surface that is given as a mesh is exported with its own triangles. The mesh is that of the machined
+// surface, which `retrace turn` writes.
 TEST_F(Entrance, MeshesAreExportedAsTheyAre) {
   folder_.write("lens.toml", turned(kCap, {}, 0.7, "feed_um = 4\nspindle_rpm = 60\npoints_per_turn = 720\n") +
                                  "[inspect]\nmesh_thickness_mm = 0.3\nmesh_rings = 100\n");

@@ -8,7 +8,8 @@
 
 #include "tests/app/program.h"
 
-// Tests of parts with an outline with the program: from a design to NC text and back, and the commands that take them.
+// Tests of the program with parts that have an outline: the path from a design to an NC program and back, and all
+// commands that accept such parts.
 
 namespace retrace::test::outline_command_test {
 namespace {
@@ -46,7 +47,7 @@ void expect_near(const Json& a, const Json& b, const std::string& path) {
 
 class OutlineCommand : public ::testing::Test {
  protected:
-  /// Makes the job and the program of a design.
+  /// Makes the job and the NC program of a design.
   void make(const std::string& design, const Arguments& options) {
     folder_.write("design.toml", design);
     Arguments job = {"job", "design.toml", "-o", "job.toml", "--quiet"};
@@ -72,7 +73,7 @@ class OutlineCommand : public ::testing::Test {
 const Arguments kTwoStep = {"--tool-width-mm", "0.2"};
 const Arguments kDmc = {"--tool-width-mm", "0.5", "--strategy", "dmc"};
 
-// The machined part has the outline of the design and returns the light of the design.
+// The machined part has the outline of the design and returns the same light as the design.
 TEST_F(OutlineCommand, PrismsComeBackAsTheDesign) {
   make(prisms(table(kNotched + "holes_mm = [[0.7, 0.6, 0.15]]\nmargin_mm = 0.1\n"), "partial_elements = \"omit\"\n"),
        kTwoStep);
@@ -105,7 +106,7 @@ TEST_F(OutlineCommand, TheJobContainsTheOutline) {
   EXPECT_NEAR(machined["entrance_area_mm2"].get<double>(), design["entrance_area_mm2"].get<double>(), 1e-9);
 }
 
-// A program for the whole rectangle cuts the land outside of the outline, which is found.
+// A program for the whole rectangle cuts the land outside of the outline. `retrace verify` finds this error.
 TEST_F(OutlineCommand, CutsOutsideOfTheOutlineAreFound) {
   make(prisms("", "x_length_mm = 3\ny_length_mm = 2.4\n"), kTwoStep);
   const std::string whole = folder_.read("nc/program.ngc");
@@ -173,7 +174,7 @@ TEST_F(OutlineCommand, ReachableCubeCornersAreInsideTheOutline) {
   EXPECT_NEAR(reached["entrance_area_mm2"].get<double>(), design["entrance_area_mm2"].get<double>(), 1e-9);
 }
 
-// A mask selects elements of the bounding box, of which those inside the outline remain.
+// A mask selects elements of the bounding box. Of these, only the elements inside the outline remain.
 TEST_F(OutlineCommand, MasksSelectElementsInsideTheOutline) {
   std::string picture = "P2\n15 9\n255\n";
   for (int k = 0; k < 15 * 9; ++k) picture += k % 15 < 8 ? "0\n" : "255\n";
@@ -208,7 +209,7 @@ TEST_F(OutlineCommand, FaultyOutlinesOfJobsAreRefused) {
   EXPECT_EQ(refusal("tolerance_mm = 0.005", "tolerance_mm = 1e-6"), "outline.tolerance_mm");
 }
 
-// The rectangle as outline gives the numbers of the rectangle.
+// A rectangular outline gives the same results as x_length_mm and y_length_mm.
 TEST_F(OutlineCommand, ARectangleGivesTheNumbersOfTheRectangle) {
   const std::string lengths = "x_length_mm = 3\ny_length_mm = 2\n";
   const std::string zones =

@@ -1,4 +1,4 @@
-// Tests of shells with the program: design files, all commands that support shells, commands that refuse them, and
+// Tests of the program with shells: design files, all commands that support shells, commands that refuse them, and
 // invalid keys.
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ class Shell : public ::testing::Test {
   }
   Json rre(const std::string& design, const Arguments& more) { return run(design, with({"rre", "design.toml"}, more)); }
 
-  /// Returns the position `file:line: key` of the error for which a design is refused.
+  /// Returns the position, as `file:line: key`, of the error that the program reports for a design.
   std::string refusal(const std::string& design, const Arguments& command = {"rre", "design.toml", "-o", "out"}) {
     folder_.write("design.toml", design);
     const auto before = folder_.names();
@@ -72,8 +72,8 @@ TEST_F(Shell, OfIndexOneChangesNothing) {
   }
 }
 
-// A plate multiplies the efficiency at normal incidence by the transmittance of four surfaces. The ledger contains the
-// light that the shell reflects, as a column of the table too.
+// A plate multiplies the efficiency at normal incidence by the transmittance of four surfaces. The light that the shell
+// reflects is in the ledger and in a column of the table.
 TEST_F(Shell, PlateMultipliesTheEfficiency) {
   const double factor = std::pow(0.96, 4.0);
   const Json bare = rre(kEndless, {"--incidence=0"});
@@ -111,8 +111,8 @@ TEST_F(Shell, DesignsKeepTheirShells) {
   EXPECT_EQ(shells[1]["wedge_deg"], Json::array({0.0, 0.0}));
 }
 
-// Behind a plate, photometry computes diffraction and gives a verdict. The intensities are those without the plate
-// times a factor between those of s- and p-polarised light.
+// Behind a plate, photometry computes diffraction and gives a verdict. The plate multiplies each intensity by a factor
+// between the factors for s- and p-polarised light.
 TEST_F(Shell, PhotometryBehindAPlateHasAVerdict) {
   folder_.write("limits.csv",
                 "standard,class,colour,observation_deg,v_deg,h_deg,minimum,unit,status\n"
@@ -166,7 +166,7 @@ TEST_F(Shell, InspectDescribesAndDrawsThem) {
   EXPECT_NE(folder_.read("out/shells.svg").find("<svg"), std::string::npos);
 }
 
-// An emitter is placed in front of the shells. The light that it sends passes them twice.
+// An emitter is placed in front of the shells. Its light crosses the shells on its way to the part and back.
 TEST_F(Shell, RaysPassThem) {
   const std::string plate =
       "[part]\nplate_mm = [20, 20]\n[body]\nthickness_mm = 1\nfacet_coating = \"aluminium\"\n"
@@ -217,7 +217,7 @@ TEST_F(Shell, KeysThatMakeNoSenseAreRefused) {
   EXPECT_EQ(refusal(ball + kPlate), "design.toml:6: shell");
 }
 
-// Surfaces must extend over the part, and must not cross each other, the next shell or the part.
+// The surfaces of a shell must extend over the whole part. They must not cross each other, the next shell or the part.
 TEST_F(Shell, SurfacesThatCrossAreRefused) {
   const auto shell = [&](const std::string& keys) { return kCubes + "[[shell]]\n" + keys; };
   EXPECT_EQ(refusal(shell("thickness_mm = 1\ngap_mm = 5\nouter_radius_mm = 9\n")),

@@ -1,5 +1,5 @@
-// Tests of closed boundaries of parts with curved entrance faces: closedness, volumes against integrals and closed
-// forms, and the distance between triangles and surface.
+// Tests of closed boundaries of parts with curved entrance faces: they must be closed, their volumes are compared with
+// integrals and closed forms, and the distance between triangles and surface is checked.
 #include "geometry/entrance/curved_boundary.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct NamedBoundary {
   Part part;
 };
 
-/// Returns parts with steps at their borders, cut elements, oblique sides and a plate.
+/// Returns parts with steps at their borders, with cut elements and with oblique sides, and a plate.
 std::vector<NamedBoundary> parts() {
   std::vector<NamedBoundary> all;
   all.push_back({"bricks", build_welded_part(finite(RtpElement{0.7, 0.5}, Arrangement::offset, 3.1, 2.3, 1.4))});
@@ -44,7 +44,8 @@ std::vector<NamedBoundary> parts() {
   return all;
 }
 
-/// Integrates a function over a convex polygon: the midpoint rule on small triangles of a fan.
+/// Integrates a function over a convex polygon. The polygon is divided into small triangles, and the midpoint rule is
+/// used.
 double integral(const Polygon& outline, const std::function<double(const Vec2&)>& f) {
   constexpr int kSteps = 300;
   double sum = 0.0;
@@ -92,7 +93,8 @@ TEST(CurvedBoundary, SolidsAreClosedWithTheVolumeBelowTheSurface) {
     }
 }
 
-// The volume below an inclined plane is the area times the height at the centroid. It has no error of triangulation.
+// The volume below an inclined plane is the area times the height at the centroid. Triangles represent the plane
+// exactly.
 TEST(CurvedBoundary, InclinedPlanesAreExact) {
   const Entrance wedge = plane_entrance(1.5, 0.08, -0.05);
   for (const NamedBoundary& p : parts()) {

@@ -77,7 +77,7 @@ TEST(DxfOutline, LayersAreSelected) {
   EXPECT_EQ(refusal(text, {"OTHER", {}}), "o.dxf");
 }
 
-/// Entities on other layers may have any size, and values that the outline must not have.
+/// Entities on other layers may have any number of vertices, and values that would be refused on the selected layer.
 TEST(DxfOutline, LimitsApplyToTheSelectedLayer) {
   std::string large = "0\nLWPOLYLINE\n8\nNOTES\n90\n30000\n70\n0\n";
   for (int k = 0; k < 30000; ++k) large += "10\n" + std::to_string(k) + "\n20\n0\n";

@@ -1,5 +1,5 @@
 // Tests of entrance surfaces that are given by numbers and formulas. Heights and slopes are compared with closed forms.
-// A rotated sphere is a shifted sphere. Surfaces that fold are refused.
+// A rotated sphere must equal a shifted sphere. Surfaces that fold must be refused.
 #include "geometry/entrance/entrance_shape.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Returns a surface with an inclination of its axis and a rotation about its axis.
+/// Returns a surface whose axis is inclined, and which is rotated about this axis.
 EntranceSurface surface_of(const EntranceShape& shape, const Vec3& origin_mm = Vec3::Zero(),
                            const EntranceInclination& inclination = {}, double rotation_deg = 0.0) {
   const SurfacePose pose{origin_mm,
@@ -71,7 +71,7 @@ TEST(EntranceShape, BiconicWithEqualRadiiIsASphere) {
                 1e-13);
 }
 
-// Along its two principal sections, a biconic surface is the conic of each section.
+// In each of its two principal sections, a biconic surface has the conic of this section.
 TEST(EntranceShape, BiconicHasTheConicsOfItsSections) {
   const EntranceSurface biconic = surface_of(BiconicEntrance{{40.0, -15.0}, {-0.4, 0.2}});
   const EntranceSurface along_x = surface_of(SphereEntrance{40.0, -0.4});
@@ -89,7 +89,7 @@ TEST(EntranceShape, FormulaIsTheShapeThatItDescribes) {
   expect_same(surface_of(formula("r * cos(theta) / 4")), surface_of(formula("x / 4")), 1e-9);
 }
 
-// A cylinder that is rotated by an angle about its axis is the cylinder of the rotated coordinate.
+// A cylinder that is rotated by 30 degrees about z equals the formula in which x is replaced by the rotated coordinate.
 TEST(EntranceShape, RotationIsFromXTowardsY) {
   const double c = std::cos(30.0 * kDegree);
   const double s = std::sin(30.0 * kDegree);
@@ -110,8 +110,7 @@ TEST(EntranceShape, InclinedPlaneRisesTowardsTheAzimuth) {
   }
 }
 
-// The centre of a sphere that is rotated about its vertex moves on a circle. The rotated sphere is the sphere about the
-// new centre.
+// If a sphere is rotated about its vertex, its centre moves on a circle. The result is a sphere with the new centre.
 TEST(EntranceShape, RotatedSphereIsAShiftedSphere) {
   for (const double radius : {400.0, 60.0, -90.0})
     for (const double angle : {1e-6, 12.0, 35.0, 60.0})
@@ -133,8 +132,8 @@ TEST(EntranceShape, RotatedSphereIsAShiftedSphere) {
       }
 }
 
-// The slope of an inclined surface is the derivative of its height. The surface is rotated rigidly: a point of the
-// surface, rotated back, has the height of the formula.
+// The slope of an inclined surface is the derivative of its height. The surface is rotated as a rigid body: if a point
+// of the surface is rotated back, it has the height of the formula.
 TEST(EntranceShape, InclinedFormulaIsRotatedRigidly) {
   const EntranceShape shape = formula("0.1 * sin(x / 3) * cos(y / 4) - (x^2 + 2 * y^2) / 300");
   const Sag upright = height_of(shape);
@@ -148,7 +147,7 @@ TEST(EntranceShape, InclinedFormulaIsRotatedRigidly) {
   }
 }
 
-// The reference axis, the axis of the face and z are in one plane. The reference axis refracts into z by default.
+// The reference axis, the axis of the face and z are in one plane. The angles between them are the given ones.
 TEST(EntranceShape, ReferenceAxisIsAtTheIncidence) {
   const EntranceInclination inclination{50.0, 120.0, 30.0};
   const Vec3 axis = rotation_of(inclination).col(2);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Outlines for tests: polygons with rounded corners, and random star-shaped outlines with arcs, rounded corners and
-// holes, convex or not.
+// holes. The random outlines may be convex or not convex.
 
 #include <gtest/gtest.h>
 

@@ -146,8 +146,8 @@ TEST(Outline, RandomOutlinesKeepTheirAreas) {
   EXPECT_LT(concave, 195);
 }
 
-/// Returns the area by Green's theorem: the integral of (x dy - y dx) / 2 along the border, with Gauss's rule of five
-/// points on 16 portions of each arc.
+/// Returns the area from Green's theorem, as the integral of (x dy - y dx) / 2 along the border. Each arc is divided
+/// into 16 portions, which are integrated with Gauss's rule of five points.
 double area_by_green(const Outline& outline) {
   constexpr std::array<double, 5> kAt = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
                                          0.9061798459386640};
@@ -161,7 +161,8 @@ double area_by_green(const Outline& outline) {
         sum += 0.5 * (side.from_mm.x() * side.to_mm.y() - side.from_mm.y() * side.to_mm.x());
         continue;
       }
-      // Centre and angles from the chord and the sagitta: the arc passes through the point beside the chord's centre.
+      // The centre and the angles of the arc follow from the chord and the sagitta. The arc is on the right side of the
+      // chord if the sagitta is positive.
       const Vec2 chord = side.to_mm - side.from_mm;
       const double sagitta = 0.5 * side.bulge * chord.norm();
       const Vec2 right = Vec2(chord.y(), -chord.x()) / chord.norm();

@@ -430,7 +430,7 @@ TEST(Zones, ThatDoNotCoverThePartAreFound) {
   EXPECT_EQ(fault({box(0, 0, 2, 3)}, {box(2.5, 0, 4, 3)}), 1);
 }
 
-/// Returns a plate with an outline.
+/// Returns a plate with an outline and zones.
 ZonedSpec outlined_plate(const Outline& outline, double margin_mm, std::vector<PartZone> zones) {
   std::optional<OutlineFault> fault;
   const auto plan = std::make_shared<const PlanRegion>(plan_region(outline, margin_mm, 0.01, fault));
@@ -469,7 +469,8 @@ TEST(ZonesWithOutline, ARectangleIsTheRectangle) {
   EXPECT_LT((spec.size_mm - size).norm(), 1e-12);
 }
 
-// A plate that one zone covers is the part without zones, for regions and for sets of elements.
+// A plate that is covered by a single zone equals the part without zones. The zone is given as a region or as a set of
+// elements.
 TEST(ZonesWithOutline, OneZoneIsThePartItself) {
   for (const Outline& outline : {notched(), holed()})
     for (const double margin_mm : {0.0, 0.15})

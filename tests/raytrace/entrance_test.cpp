@@ -494,9 +494,9 @@ TEST(Entrance, MeshesMustCoverTheOutlineOnce) {
   EXPECT_EQ(message(twice, MeshSide::top), "refused");
 }
 
-// Paths for drawings are refracted at the exact surface, like traced paths. All light of mirrors behind a lossless
-// surface takes one path. Traced light that meets a lossless surface from inside beyond the critical angle does not
-// leave.
+// Paths for drawings are refracted at the exact surface, like traced paths. Behind a lossless surface with mirrors,
+// light does not split, so that both methods give a single path. Paths are not compared if the traced light does not
+// leave, because it meets the surface from inside beyond the critical angle.
 TEST(Entrance, DrawnPathsAreTracedPaths) {
   const Part part = build_part(finite(HexagonalCube{1.0}, Arrangement::honeycomb, 5.0, 4.0, 1.0));
   const Vec2 centre = bounding_box(part.outline).centre();

@@ -150,8 +150,8 @@ TEST(Shells, OfIndexOneChangeNothing) {
               1e-12);
 }
 
-// Entrance faces that scatter light behave behind shells of index 1 as without shells, and keep all light behind
-// plates.
+// Tests entrance faces that scatter light. Shells of index 1 change nothing. Behind plates, the ledger contains all
+// light.
 TEST(Shells, ContaminatedEntranceFacesKeepAllLight) {
   Optics bare = pmma();
   bare.entrance.haze = {0.2, 0.1};
@@ -171,7 +171,7 @@ TEST(Shells, ContaminatedEntranceFacesKeepAllLight) {
 }
 
 // A plate in front of a mirror multiplies the returned light by the transmittance of four surfaces, for s and p
-// separately, and by the absorption on both ways through the plate.
+// separately, and by the absorption on both passages through the plate.
 TEST(Shells, PlateTransmitsBothPolarisationsTwice) {
   const Part part = build_plate({6.0, 5.0}, 0.1);
   for (const double incidence : {0.0, 20.0, 45.0, 70.0})
@@ -229,7 +229,7 @@ TEST(Shells, EnginesAgree) {
   expect_same(by_rays(cubes(), optics, light, 1U << 17).cones[0].ledger, beams, 1e-3);
   expect_same(by_rays(cubes(), optics, light, 1U << 17, 0.5, MonteCarlo::Engine::cell).cones[0].ledger, beams, 1e-3);
   optics.shells[0].outer.normal = optics.shells[0].inner.normal = normal_at(-12.0, 25.0);
-  // The exact engine truncates weak beams, which belong to any of the other accounts.
+  // The exact engine truncates weak beams. Their power is missing from the other accounts.
   const Ledger exact = by_beams(plate_of_cubes(), optics, light, 1e-5);
   expect_same(by_rays(plate_of_cubes(), optics, light, 1U << 17).cones[0].ledger, exact,
               1e-3 + exact[Account::truncated]);
@@ -255,8 +255,8 @@ TEST(Shells, WedgeDeflectsLikeAPrism) {
     }
 }
 
-// Cube corners behind a wedge return light to the source, because each path is reversed. The efficiency is that of
-// light which arrives in the deflected direction, times the transmittance of four surfaces.
+// Cube corners behind a wedge return light to the source, because each path is reversed. The efficiency is that for
+// light from the deflected direction without a wedge, times the transmittance of four surfaces.
 TEST(Shells, CubeCornersBehindAWedgeReturnLightToTheSource) {
   const double angle = 5.0;
   const double incidence = 10.0;
@@ -320,8 +320,9 @@ TEST(Shells, LensInFrontOfAMirrorFollowsRayMatrices) {
   }
 }
 
-// Behind a thin lens of focal length f, a beam is narrower at the distance g by the factor 1 - g / f. The region of the
-// incident beam is larger than the entrance face by the inverse of the square of this factor.
+// At the distance g behind a thin lens of focal length f, the width of a beam has changed by the factor 1 - g / f. The
+// area of the region of the incident beam is therefore the area of the entrance face divided by the square of this
+// factor.
 TEST(Shells, RegionOfTheBeamIsTheFaceMagnifiedByTheLens) {
   const Polygon outline = to_polygon(Rectangle{{-0.02, -0.01}, {0.02, 0.01}});
   for (const double radius : {50.0, -50.0, 20.0}) {
@@ -349,8 +350,8 @@ TEST(Shells, LensesOfLargeRadiusAreLikePlates) {
   }
 }
 
-// A lens lights the whole part and only the part, also at oblique incidence and in front of a curved entrance surface
-// that is higher than the rim of the lens.
+// The light that enters through a lens meets the part and does not pass beside it. This is also tested at oblique
+// incidence, and for a curved entrance surface that is higher than the rim of the lens.
 TEST(Shells, LensLightsTheWholePart) {
   const Part part = build_plate({8.0, 6.0}, 0.5);
   for (const double incidence : {0.0, 25.0}) {
@@ -364,7 +365,7 @@ TEST(Shells, LensLightsTheWholePart) {
   Optics optics = mirrored_pmma();
   optics.shells = {lens(0.1, 2.0, kIndex, 32.0, 30.0)};
   const MonteCarloResult result = by_rays(part, optics, from(0.0), 1U << 13, 0.5, MonteCarlo::Engine::embree, &dome);
-  // The lens makes the light oblique, so that a small part of it passes beside the lower rim of the dome.
+  // The lens deflects the light, and a small fraction of it passes beside the lower rim of the dome.
   EXPECT_LT(result.cones[0].ledger[Account::transmitted], 1e-3);
   EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
 }
@@ -397,7 +398,7 @@ TEST(Shells, LedgersAddUpToOne) {
   }
 }
 
-// A single ray is displaced by a plate on its way in and out. A ray that starts behind the plate crosses it only on its
+// A plate displaces a ray on its way in and on its way out. A ray that starts behind the plate crosses it only on its
 // way out.
 TEST(Shells, RaysFromOutsideAreDisplacedByAPlate) {
   const double thickness = 2.0;

@@ -272,7 +272,7 @@ TEST(WetBack, LedgersAddUpToOne) {
   }
 }
 
-/// The sides of notches and holes below z = 0 have the medium behind the element next to them.
+/// Below z = 0, the sides of notches and holes are in contact with the medium behind the adjacent element.
 TEST(WetBack, NotchesAndHolesAreWetTogetherWithTheirElements) {
   for (const Outline& outline : {bent_outline(), ring_outline()}) {
     const Part part =

@@ -54,7 +54,7 @@ design::OpticalModel model_of(const std::string& text) {
   return design::make_model(read(text), materials::MaterialLibrary::shipped());
 }
 
-/// Traces light from a direction by rays.
+/// Traces light from a direction with the ray engine.
 ConeResult traced(const design::OpticalModel& model, const Vec3& to_source, double cone_deg,
                   std::uint64_t rays = 4096) {
   const raytrace::MonteCarlo tracer(model.part, raytrace::MonteCarlo::Engine::embree,
@@ -147,7 +147,7 @@ TEST(InclinedEntrance, KeysThatMakeNoSenseAreRefused) {
 
 TEST(InclinedEntrance, SurfacesThatDoNotFitAreRefused) {
   const auto at = [](const std::string& keys) { return refused(kCubes + surface(keys) + kThick); };
-  // Through the elements, folded, not finite.
+  // Surfaces that pass through the elements, fold, or are not finite.
   EXPECT_EQ(at("kind = \"sphere\"\nradius_mm = 18.2\n"), "d.toml:10: entrance_surface.radius_mm");
   EXPECT_EQ(at("kind = \"plane\"\nincidence_deg = 60\npin_angle_deg = 50\n"), "d.toml:9: entrance_surface.kind");
   EXPECT_EQ(at("kind = \"formula\"\nformula = \"sin(2*x)\"\nincidence_deg = 50\npin_angle_deg = 40\n"),
@@ -161,7 +161,7 @@ TEST(InclinedEntrance, SurfacesThatDoNotFitAreRefused) {
 }
 
 // A plane receives all light of the beam, whatever its inclination. It reflects the fraction that Fresnel's formulas
-// give for the angle between the light and its normal.
+// give for the angle between the light and the normal of the plane.
 TEST(InclinedEntrance, PlaneReflectsTheBeamAsFresnelSays) {
   const std::string plane = "kind = \"plane\"\nincidence_deg = 35\nazimuth_deg = 20\npin_angle_deg = 22\n";
   const design::OpticalModel model = model_of(kCubes + surface(plane) + kThick + kIdeal);
@@ -176,8 +176,8 @@ TEST(InclinedEntrance, PlaneReflectsTheBeamAsFresnelSays) {
   }
 }
 
-// Cube corners return light antiparallel to its direction inside the part. A plane refracts it back into the direction
-// of the source, so that the tilt of the plane steers nothing.
+// Cube corners return light antiparallel to its direction inside the part. When this light leaves, the plane refracts
+// it back into the direction of the source, even if the plane is tilted.
 TEST(InclinedEntrance, CubesBehindAPlaneReturnLightExactly) {
   for (const std::string& back : {kThick, kBelow + kBody}) {
     const std::string plane = "kind = \"plane\"\nincidence_deg = 45\nazimuth_deg = 20\n";
@@ -193,8 +193,8 @@ TEST(InclinedEntrance, CubesBehindAPlaneReturnLightExactly) {
   }
 }
 
-// Inside the part, light along the reference axis is parallel to the pins. Full cubes then return nearly all of it
-// except for Fresnel losses at the plane and cut elements at the border.
+// Inside the part, light along the reference axis is parallel to the pins. Full cubes then return nearly all of this
+// light. The losses are the Fresnel losses at the plane and those of cut elements at the border.
 TEST(InclinedEntrance, PinsReturnTheLightOfTheReferenceAxis) {
   const std::string cubes =
       "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\narrangement = \"pins\"\nx_length_mm = 60\n"
@@ -237,8 +237,8 @@ double wall_of_cell(const geometry::EntranceSurface& face, const geometry::Surfa
   return thinnest_mm;
 }
 
-// The rims of a prism are on the plane of its nominal rim. Over a convex surface, the wall is thinnest at a corner of
-// the prism.
+// All rims of a prism are at the same height. Below a convex surface, the wall is therefore thinnest at a corner of the
+// prism.
 TEST(InclinedEntrance, WallsHaveTheGivenThickness) {
   const std::string prisms =
       "[element]\nkind = \"rtp\"\nbase_mm = 2\nwidth_mm = 2\n[array]\nx_length_mm = 30\ny_length_mm = 20\n";
@@ -247,7 +247,7 @@ TEST(InclinedEntrance, WallsHaveTheGivenThickness) {
   const design::OpticalModel model = model_of(text);
   const auto& face = *std::get<std::shared_ptr<const geometry::EntranceSurface>>(*model.entrance);
   const geometry::EntranceRange range = geometry::entrance_range(*model.entrance, model.part.outline);
-  EXPECT_NEAR(range.lowest_mm, 2.0, 1e-2);  // the lowest of 129 x 129 points
+  EXPECT_NEAR(range.lowest_mm, 2.0, 1e-2);  // `lowest_mm` is the minimum over 129 x 129 points
   EXPECT_NEAR(model.part.thickness_mm, range.highest_mm, 1e-2);
   int elements = 0;
   for (const geometry::Placement& placement : model.part.placements) {
@@ -286,8 +286,8 @@ TEST(InclinedEntrance, PhotometricAnglesReferToTheReferenceAxis) {
   EXPECT_NEAR(again.observation_deg.front(), 0.4, 1e-10);
 }
 
-// An inclined mirror of the area A / cos(p) returns no light to a lamp, but the projected area of its beam is that of
-// the inclined plane seen from the lamp.
+// A plane that is inclined by the angle p above a plan of the area A has the area A / cos(p). The incident power is
+// proportional to the projection of this area perpendicular to the light.
 TEST(InclinedEntrance, IncidentPowerIsThatOfTheInclinedPlane) {
   const design::Design design =
       read(kCubes + surface("kind = \"plane\"\nincidence_deg = 50\npin_angle_deg = 30\nazimuth_deg = 0\n") + kThick);

@@ -91,8 +91,7 @@ TEST(OutlineReader, FaultsAreReportedAtTheirKey) {
             "d.toml:9: outline.holes_mm");
 }
 
-/// A document contains the keys of the outline as they were given, so that polygons with many rounded corners can be
-/// read again.
+/// A document contains the keys of the outline as given, so that polygons with many rounded corners can be read again.
 TEST(OutlineReader, DocumentsContainTheKeysAsGiven) {
   std::string corners;
   constexpr int kCorners = 800;

@@ -1,5 +1,5 @@
-// Tests of light behind curved entrance surfaces that is traced through tangent planes: comparison with transforms of
-// the wavefront, with plane faces, with rays, and with the mirror image of a sphere.
+// Tests of light that is traced through tangent planes of curved entrance surfaces. The results are compared with
+// transforms of the wavefront, plane faces, rays, and the mirror image in a sphere.
 #include "raytrace/observers/element_light.h"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,7 @@ class WavefrontField {
       }
   }
 
-  /// Returns the mean intensity over a disc kernel for two equal discs with the radius `radius`.
+  /// Returns the intensity averaged over the discs of source and receiver, which have the same radius.
   double mean(const Vec2& centre, double radius) const {
     std::vector<Vec2> offsets;
     std::vector<std::vector<std::complex<double>>> rows;
@@ -131,7 +131,7 @@ class WavefrontField {
  private:
   static constexpr int kPixels = 360;
 
-  /// Returns the area that two discs share, relative to that of concentric discs. `distance` is in diameters.
+  /// Returns the common area of two equal discs, as a fraction of the area of one disc. `distance` is in diameters.
   static double overlap(double distance) {
     if (distance >= 1.0) return 0.0;
     return 2.0 / pi * (std::acos(distance) - distance * std::sqrt(1.0 - distance * distance));
@@ -198,8 +198,9 @@ PartSpec small_honeycomb(double error_arcmin) {
   return spec;
 }
 
-// A sphere of a very large radius, and an exactly plane surface, must equal the plane entrance face. Light that meets a
-// side of the part first does not interfere with other light behind a surface; the part is therefore thin.
+// A sphere with a very large radius and an exactly plane surface must give the results of the plane entrance face. With
+// an entrance surface, light that first meets a side of the part does not interfere with other light. The part is thin,
+// so that there is little of this light.
 TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
   const Part part = build_part(small_honeycomb(1.5));
   const Vec2 middle = bounding_box(part.outline).centre();
@@ -273,7 +274,8 @@ TEST(ElementLight, ErrorsAreCubicInTheCurvature) {
   EXPECT_NEAR(angles[2] / angles[1], 8.0, 3.0);
 }
 
-// The intensity of the mirror image in a sphere of radius R is rho E R^2 / 4 in every direction.
+// A sphere of radius R with the reflectance rho in the illuminance E reflects the intensity rho E R^2 / 4 in every
+// direction.
 TEST(SurfaceReflection, SphereHasTheIntensityOfItsClosedForm) {
   const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(40.0, 30.0)});
   const double radius_mm = 300.0;

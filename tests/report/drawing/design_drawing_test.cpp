@@ -207,8 +207,8 @@ TEST(DesignDrawing, SectionsHaveTheirAreas) {
   EXPECT_NEAR(area_of(row->outline_mm), 1.2 + 2.0 * 0.25 * 0.25, 1e-6);
 }
 
-// The area between the prisms and a parabola of x, which is the integral of its height plus the triangles of the
-// prisms.
+// The area of the section is the integral of the height of the entrance face, a parabola in x, plus the area of the
+// triangular prisms.
 TEST(DesignDrawing, SectionsEndAtACurvedEntranceFace) {
   const design::Design design = design::parse_design(prisms("x_length_mm = 6\ny_length_mm = 4\n"), "d.toml");
   const Part part = design::part_of(design);

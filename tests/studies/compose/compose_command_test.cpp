@@ -65,7 +65,7 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   }
 }
 
-// The zones of a part with an outline have their fractions of the area inside the outline.
+// For a part with an outline, the area fractions of zones refer to the area inside the outline.
 TEST(ComposeCommand, ZonesAreDividedInsideTheOutline) {
   const TemporaryFolder folder;
   folder.write("design.toml",

@@ -33,7 +33,7 @@ using std::numbers::pi;
 
 constexpr double kFarMm = 1e6;
 
-/// Returns a scene with an eye and a lamp far away. Directions point from the part.
+/// Returns a scene with an eye and a lamp far away. Directions point away from the part.
 CameraScene scene_at(double target_z_mm, const Vec3& to_eye, const Vec3& to_lamp, double lamp_deg, double pupil_deg) {
   CameraScene scene;
   scene.view.target_mm = {0.0, 0.0, target_z_mm};
@@ -107,9 +107,9 @@ TEST(CurvedCamera, PlaneSurfaceIsThePlaneFace) {
 }
 
 // A plano-convex lens over a mirror at its back is a curved mirror. A ray that enters at the distance y from the axis
-// leaves at the angle -k y (docs/theory/fronts.md, "A lens and a mirror"). The eye therefore sees the disc of a lamp of
-// the angular radius r at the position of the angle of the lamp divided by -k, with the radius r / k and the luminance
-// of the lamp.
+// leaves at the angle -k y (docs/theory/fronts.md, "A lens and a mirror"). The eye therefore sees an image of the lamp
+// with the luminance of the lamp. For a lamp at the angle a with the angular radius r, the image is a disc at y = -a /
+// k with the radius r / k.
 TEST(CurvedCamera, LensOverAMirrorShowsAnImageOfTheLamp) {
   const double radius_mm = 100.0;
   const double thickness_mm = 3.0;
@@ -207,7 +207,7 @@ TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
   for (const double b : batches) spread += std::pow(b - forwards, 2.0);
   const double error = std::hypot(std::sqrt(variance), std::sqrt(spread / (kBatches - 1.0) / kBatches));
   EXPECT_GT(forwards, 0.0);
-  // Terms that are not linear in the radii of the discs are neglected: up to 1e-2.
+  // Terms of higher order in the radii of the discs are neglected. Their fraction is at most 1e-2.
   EXPECT_NEAR(intensity, forwards, student_bound(1) * error + 0.01 * forwards);
   EXPECT_LT(error, 0.04 * forwards);
 }
@@ -247,7 +247,7 @@ TEST(CurvedDetector, PlaneSurfaceGivesTheMapsOfThePlaneFace) {
   EXPECT_NEAR(curved.outside, plane.outside, 1e-9);
   for (std::size_t k = 0; k < plane.per_sr.value.size(); ++k)
     EXPECT_NEAR(curved.per_sr.value[k], plane.per_sr.value[k], 1e-9 * (1.0 + plane.per_sr.value[k])) << k;
-  // A ray near the border of two pixels may be recorded in the other one because of rounding.
+  // Because of rounding errors, a ray near the border between two pixels may be recorded in either pixel.
   const double ray = part.entrance_area_mm2 / (1U << 15) / setting_of(part, light).face.pixel_area_mm2();
   for (std::size_t k = 0; k < plane.leaving.value.size(); ++k) {
     EXPECT_NEAR(curved.leaving.value[k], plane.leaving.value[k], 2.0 * ray) << k;

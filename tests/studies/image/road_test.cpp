@@ -361,7 +361,7 @@ TEST(Road, FiniteDesignsHaveTheirOwnOutline) {
   EXPECT_NEAR(scene_of(request, {hexagon}).area(), 0.06 * 0.02, 1e-15);
 }
 
-/// A reflector with a notch has the area of its parts. A sign needs a convex outline.
+/// The area of a reflector with a notch is the sum of the areas of its convex polygons. A sign needs a convex outline.
 TEST(Road, NotchesReturnNoLight) {
   const std::vector<Polygon> angle = {{{0, 0}, {60, 0}, {60, 20}, {0, 20}}, {{0, 20}, {20, 20}, {20, 40}, {0, 40}}};
   RoadRequest request;
