@@ -10,13 +10,14 @@ namespace retrace::raytrace {
 namespace {
 
 constexpr int kMaxNewtonSteps = 60;
-// Accuracy of intersections and of points of entry.
+// Iterations for intersections and entry points stop when a step is shorter than this.
 constexpr double kAccuracy_mm = 1e-11;
 // Degree of the polynomial that describes the height above the tangent plane, and number of sample points along each
 // axis.
 constexpr int kSagDegree = 6;
 constexpr int kSagPoints = 12;
-// Maximum degree of terms whose squared slope is a FacetForm.
+// Maximum degree of the terms that squared_slope() uses. The squares of the slopes of higher terms would exceed the
+// maximum degree of a FacetForm.
 constexpr int kSquaredDegree = 5;
 static_assert(2 * (kSquaredDegree - 1) <= surface_models::FacetForm::kMaxDegree);
 
@@ -61,7 +62,7 @@ std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, con
     if (!is_defined(sample)) return std::nullopt;
     const Vec3 direction = refracted_inside(sample.slope, to_source, index);
     if (!(direction.z() < 0.0)) return std::nullopt;
-    // Intersection of the line through the target with the tangent plane at the present point.
+    // Next point: the intersection of the tangent plane at `at` with the line through the target along `direction`.
     const Vec2 per_height = lean(direction);
     const double rise = (sample.height_mm - target_mm.z() + sample.slope.dot(target_mm.head<2>() - at)) /
                         (1.0 - sample.slope.dot(per_height));
@@ -127,7 +128,7 @@ std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, c
   std::vector<Point> points;
   for (int a = 0; a < kSagPoints; ++a)
     for (int b = 0; b < kSagPoints; ++b) {
-      // Chebyshev points, which keep the error of the polynomial low up to the border.
+      // Chebyshev points keep the error of the polynomial low up to the border of the square.
       const auto node = [](int k) { return std::cos(EIGEN_PI * (k + 0.5) / kSagPoints); };
       const Vec2 at(node(a), node(b));
       const Vec3 foot = plane.to_part({half_width_mm * at.x(), half_width_mm * at.y(), 0.0});
@@ -156,7 +157,8 @@ std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, c
 }
 
 surface_models::FacetForm squared_slope(const SurfaceSag& sag, const Vec2& per_height) {
-  // A slope (a, b) of the surface changes the phase across the light. The squared gradient across the light is
+  // The height of the surface is projected along the light onto a plane perpendicular to the light. For a surface with
+  // the slope (a, b), the squared gradient of the projected height is
   // a^2 + b^2 + (a per_height.x + b per_height.y)^2.
   const double xx = 1.0 + per_height.x() * per_height.x();
   const double yy = 1.0 + per_height.y() * per_height.y();

@@ -291,7 +291,7 @@ struct CameraTracer::Impl::GuideTraining {
 };
 
 /// Returns the point at which a ray enters the plate of a finite part, through the entrance face or a side. Returns
-/// nothing if the ray meets neither of them from outside, and for the sides of a part with notches or holes.
+/// nothing if the ray meets neither of them from outside. The sides of a part with notches or holes are ignored.
 std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ray) const {
   const PathSetup& setup = setups.front();
   const auto is_within = [&](const Vec3& p, std::size_t except) {
@@ -359,8 +359,9 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path that meets, from outside, a part with a curved entrance face. Also traces light that
-  /// meets a part with notches or holes, but not its entrance face. Returns false if the light misses the part.
+  /// Traces the light of one path from a point outside of the part. This function is used for all paths if the entrance
+  /// face is curved, and for paths that do not meet the entrance face of a part with notches or holes. Returns false if
+  /// the light misses the part.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
@@ -375,7 +376,7 @@ struct CameraTracer::Impl::Block {
     return true;
   }
 
-  /// Returns the power that has left through the sides and the back.
+  /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
   std::vector<CameraSample> paths;  ///< kPointsPerPass per pixel

@@ -66,8 +66,8 @@ struct CameraScene {
   std::optional<Film> film;  ///< set for infinite parts
   DiscAverage discs = DiscAverage::kernel;
   /// Correction of the lamp's light that enters and leaves through the entrance face. Its blur requires
-  /// DiscAverage::kernel. For a curved entrance face, it has one gain and no blur, and applies to all light that
-  /// enters.
+  /// DiscAverage::kernel. For a curved entrance face, the correction has a single gain and no blur. It then applies to
+  /// all light that enters through this face, wherever the light leaves.
   ReturnCorrection correction;
   /// True if the picture shows the reflection of the lamp at the outer side of the entrance face.
   bool has_front_reflection = true;
@@ -130,9 +130,8 @@ class CameraTracer {
   /// Number of points per pixel and pass. The points are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
-  /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face. Its paths
-  /// are
-  ///     traced with Embree
+  /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face. Parts with
+  ///     a curved face are traced with Embree.
   /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer;
   /// if `engine` is `fastest`, Optics::has_uniform_backing() is true for all `light`
   CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light, const CameraScene& scene,

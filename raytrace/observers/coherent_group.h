@@ -15,9 +15,9 @@
 
 namespace retrace::raytrace {
 
-/// A facet with a texture or a form, or a curved entrance surface, that light has met before it leaves the entrance
-/// face at a point r. The light met the facet at constant_mm + slope r. The other data describe the phase shift by the
-/// heights of the facet.
+/// A surface whose heights shift the phase of light: a facet with a texture or a form, or a curved entrance surface.
+/// Light that leaves the entrance face at the point r met the surface at the point constant_mm + slope r. The other
+/// data describe the phase shift.
 struct FieldHit {
   Vec3 normal = Vec3::UnitZ();  ///< normal of the facet's plane normal . p = offset_mm
   double offset_mm = 0.0;

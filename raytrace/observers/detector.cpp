@@ -79,7 +79,7 @@ struct Deposits {
   std::vector<Deposit> leaving;
   std::vector<Deposit> entering;
   std::vector<Deposit> rings;   ///< indices of AngularRings::power
-  std::vector<Deposit> angles;  ///< indices of bins; the number of bins is the index of all other directions
+  std::vector<Deposit> angles;  ///< indices of bins; the index after the last bin means outside of the grid
   double in_cone = 0.0;
   double truncated = 0.0;
   double lost = 0.0;
@@ -92,7 +92,7 @@ class Recorder : public ExitObserver {
            Deposits& deposits)
       : part_(part), centre_mm_(centre_mm), light_(light), setting_(setting), deposits_(deposits) {}
 
-  /// Begins a path at a point of the plane in which the beam starts.
+  /// Begins a path at a point of the plane in which the incident beam starts.
   void enters(const Vec2& position_mm) {
     if (light_.entrance_face != nullptr) {
       entry_ = pixel_of_curved_face(position_mm);
@@ -117,8 +117,7 @@ class Recorder : public ExitObserver {
     return setting_.face.pixel_at(position_mm);
   }
 
-  /// Returns the pixel of the point at which the light meets the curved entrance face, or nothing if it misses the
-  /// face.
+  /// Returns the pixel at which the light meets the curved entrance face, or nothing if the light misses the face.
   std::optional<std::size_t> pixel_of_curved_face(const Vec2& position_mm) const {
     const Vec3 start(position_mm.x(), position_mm.y(), light_.entrance_face->beam_height_mm(position_mm));
     const Vec3 direction = -light_.to_source;
@@ -127,7 +126,7 @@ class Recorder : public ExitObserver {
     return pixel_at((start + met->hit.t * direction).head<2>());
   }
 
-  /// Returns the length of a ray within the outline of the part.
+  /// Returns the distance along a ray from its start to the nearest side of the part.
   double way_over_part(const Vec3& start, const Vec3& direction) const {
     double way_mm = kInfinity;
     for (const LightSetup::Side& side : light_.sides) {

@@ -15,26 +15,28 @@ namespace {
 
 using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
-// Number of nearest elements that may bound the portion of an element.
+// Maximum number of neighbours that bound the portion of an element. The nearest elements are used.
 constexpr std::size_t kMaxNeighbours = 48;
-// Distance in plan up to which an excerpt contains the surroundings of an element, in sizes of the element.
+// Maximum distance in plan between an element and the other cells of its excerpt, in element sizes.
 constexpr double kSurroundings = 1.5;
-// Half width of the square in which the surface is fitted, relative to the portion of the element.
+// Half width of the square in which the surface is fitted, relative to the largest coordinate of shadow_of().
 constexpr double kFittedWidth = 1.25;
-// Distance of neighbouring light for the concentration of the surface, in sizes of the element.
+// Distance between the rays that concentration() compares and the tangent point, in element sizes.
 constexpr double kConcentrationStep = 0.05;
-// Area below which a polygon counts as empty, in squares of the element's size.
+// Area below which a polygon counts as empty, as a fraction of the squared element size.
 constexpr double kEmptyArea = 1e-9;
-// Merging distance of corners, in sizes of the element.
+// Distance below which corners are merged, in element sizes.
 constexpr double kMerge = 1e-11;
-// Size of the fragments into which the entrance face of an excerpt is divided, relative to the largest piece.
+// Size of the fragments into which the entrance face of an excerpt is divided, relative to its largest polygon. It
+// exceeds 1, so that no polygon is divided.
 constexpr double kFragment = 1.001;
-// Minimum distance between an element and its tangent plane, in sizes of the element.
+// Minimum distance between an element and its tangent plane, in element sizes.
 constexpr double kMinThickness = 1e-5;
-// Maximum change of illuminance within the light of an element, as a factor.
+// Maximum factor by which the curvature of the surface may increase or reduce the illuminance of an element.
 constexpr double kMaxConcentration = 2.0;
 
-/// Returns the half-plane of a tangent plane's frame in which normal . p <= offset for points p of the part frame.
+/// Converts the half-space normal . p <= offset of the part frame to a half-plane of the tangent plane, in the frame of
+/// this plane.
 HalfPlane half_plane_on(const TangentPlane& plane, const Vec3& normal, double offset) {
   const Vec3 own = plane.frame_from_part * normal;
   return {own.x(), own.y(), offset - normal.dot(plane.point_mm)};
@@ -50,8 +52,8 @@ Polygon as_polygon(const FlatPolygon& polygon) {
   return {polygon.begin(), polygon.end()};
 }
 
-/// Returns the area of the tangent plane through which the light enters that first meets an element, if there are no
-/// other elements.
+/// Returns the projection of an element onto the tangent plane, along the light inside the part. If there were no other
+/// elements, all light that enters through this polygon would meet the element first.
 FlatPolygon shadow_of(const PartElement& element, const TangentPlane& plane, const Vec3& inside_direction) {
   const Vec3 own = plane.frame_from_part * inside_direction;
   std::vector<Vec2> points;
@@ -123,14 +125,15 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
   Bounds bounds;
   bounds.merge_mm = kMerge * part_.size_mm;
   bounds.diameter_mm = diameter_mm_;
-  // Displacement of a ray in plan per height of its start below the plane of the incident beam.
+  // A point below the plane of the incident beam is reached by light that crosses this plane at another position in
+  // plan. This is the displacement per height of the plane above the point.
   const Vec2 per_height = to_source.head<2>() / rise_above(beam_plane_, to_source);
   for (std::size_t k = 0; k < part_.outline.size(); ++k) {
     const Vec2& a = part_.outline[k];
     const Vec2 along = part_.outline[(k + 1) % part_.outline.size()] - a;
     const Vec2 outward(along.y(), -along.x());
     bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), 0.0}, outward.dot(a)));
-    // The incident beam covers the outline in the plane that touches the surface from above.
+    // The incident beam covers exactly the outline in the plane that touches the surface from above.
     const double lean = outward.dot(per_height);
     const Vec2 in_plane = outward + lean * beam_plane_.slope;
     bounds.of_part.push_back(
@@ -225,7 +228,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
     }
   }
   made.outline = geometry::to_polygon(box);
-  // The exact engine divides the entrance face into fragments of the size of an element. Each piece is one fragment.
+  // The exact engine divides the entrance face into fragments of the size of an element. With this size, each piece
+  // remains one fragment.
   made.spec = {};
   made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
   made.entrance_area_mm2 = face_mm2;
@@ -259,7 +263,8 @@ Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, c
 
 namespace {
 
-/// Returns the hit of the curved surface by light that enters or leaves at the tangent plane.
+/// Returns the hit that describes the phase shift by the curved surface for light that enters or leaves at the tangent
+/// plane.
 TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, double cos_outside) {
   TexturedHit hit;
   const double thickness_mm = scene.excerpt.part.thickness_mm;
@@ -274,9 +279,10 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
-/// Adds the curvature of the entrance surface to the hits of a beam.
+/// Adds hits to a beam that describe the curvature of the entrance surface.
 void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
-  // The frame of a facet's form is defined in the part frame.
+  // The axes of the frame of a facet's form are horizontal and downward in the part frame, not in the frame of the
+  // excerpt.
   for (TexturedHit& hit : beam.hits) {
     if (hit.path_per_height == 0.0) continue;
     const Vec3 normal = scene.plane.frame_from_part.transpose() * hit.plane.normal;
@@ -289,8 +295,8 @@ void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
   entry.slope.topLeftCorner<2, 2>() = beam.entry_from_exit.linear();
   beam.hits.push_back(entry);
   beam.hits.push_back(surface_hit(scene, beam, beam.direction.z()));
-  // The surface makes the wave converge or diverge inside the part. Over the length L, a wave with the optical path
-  // phi(x) across its direction becomes phi - L |grad phi|^2 / 2 n (eikonal equation).
+  // The surface makes the wave converge or diverge inside the part. If the optical path varies as phi(x) across the
+  // wave, it varies as phi - L |grad phi|^2 / (2 n) after the length L (eikonal equation).
   const Vec2 exit = geometry::centroid(beam.exit_polygon_mm) - beam.centre_mm;
   const double path_mm =
       beam.phase_mm + beam.direction.head<2>().dot(exit) + scene.to_source.head<2>().dot(beam.entry_from_exit * exit);

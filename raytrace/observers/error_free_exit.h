@@ -28,9 +28,9 @@ struct ErrorFreeExit {
   double phase_change_mm = 0.0;
 };
 
-/// Combined effect of the reflections of a path: x -> matrix x + shift_mm, with an orthogonal matrix. It maps the point
-/// and the direction that the light would have without reflections to its actual point and direction. Coordinates are
-/// relative to the part's centre, and the entrance face is the plane z = 0.
+/// Combined effect of the reflections of a path: the map x -> matrix x + shift_mm, with an orthogonal matrix. It maps
+/// the point and the direction that the light would have without reflections to the actual point and direction.
+/// Coordinates are relative to the part's centre, and the entrance face is the plane z = 0.
 struct PathIsometry {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   Vec3 shift_mm = Vec3::Zero();

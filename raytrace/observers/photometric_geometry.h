@@ -55,14 +55,15 @@ SourceAngles source_angles(const geometry::Vec3& to_source);
 /// Returns the axes around the direction to the source for this observer: `up` points towards the observer.
 ReturnFrame return_frame(const PhotometricGeometry& geometry);
 
-// The functions above are for a part whose normal in the goniometer is +z. The reference axis of a part with an
-// inclined entrance face differs from z. The following functions convert between the frame of the goniometer, whose z
-// axis is the reference axis, and the part frame. The rotation from one frame to the other is about a horizontal axis
-// of the part. It is the identity if the reference axis is z.
+// The functions above assume that the reference axis of the part is +z. This is not the case for a part with an
+// inclined entrance face. The following functions convert between the part frame and the frame of the goniometer, whose
+// z axis is the reference axis. The rotation from one frame to the other is about a horizontal axis of the part. If the
+// reference axis is z, nothing is rotated.
 
+/// Converts directions from the frame of the goniometer to the part frame.
 PhotometricDirections in_part_frame(const PhotometricDirections& directions, const geometry::Vec3& reference_axis);
 ReturnFrame in_part_frame(const ReturnFrame& frame, const geometry::Vec3& reference_axis);
-/// Returns the directions in the frame of the goniometer.
+/// Converts directions from the part frame to the frame of the goniometer.
 PhotometricDirections in_reference_frame(const PhotometricDirections& directions, const geometry::Vec3& reference_axis);
 
 /// Returns the viewing angle nu between the z axis of the part and the observation axis.

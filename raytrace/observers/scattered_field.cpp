@@ -93,8 +93,8 @@ struct ScatteredField::Moves {
   /// Returns the point whose displacement is `distance_mm`.
   Vec2 place_that_moves_by(const Vec2& distance_mm) const { return matrix.inverse() * (distance_mm + shift_mm); }
 
-  /// Returns the integral of a normal density over a polygon. At each point r, the argument of the density is the
-  /// displacement of r.
+  /// Returns the integral of f(d(r)) over all points r of a polygon. Here, f is the density of a normal distribution
+  /// and d(r) is the displacement of r.
   double places_at_line(const FlatPolygon& polygon, const Eigen::Matrix2d& spread_mm2) const {
     constexpr int kStrips = 16;
     constexpr double kReach = 4.0;

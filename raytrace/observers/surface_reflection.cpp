@@ -12,12 +12,12 @@ namespace {
 
 using geometry::EntranceSurface, geometry::Polygon, geometry::Rectangle;
 
-// The outline is divided at least kMinDivisions and at most kMaxDivisions times into quarters.
+// Minimum and maximum number of successive divisions of the bounding box into quarters.
 constexpr int kMinDivisions = 5, kMaxDivisions = 16;
-// A rectangle is divided until the directions of its reflected light differ by less than this fraction of the kernel's
-// radius.
+// A rectangle is divided until the directions in which it reflects light differ by less than this fraction of the
+// kernel's radius.
 constexpr double kFineness = 0.15;
-// Factor by which the directions at sample points of a rectangle are assumed to underestimate their range.
+// Safety factor for the range of directions in a rectangle, which is computed from a few sample points.
 constexpr double kRangeMargin = 1.5;
 // Corners are merged if their distance is less than this fraction of the size of the outline.
 constexpr double kMergedCorner = 1e-12;
@@ -86,8 +86,8 @@ class ReflectedSum {
   double sum_ = 0.0;
 };
 
-/// Returns the part of the outline in which the incident beam meets the surface. Edges of the beam's shadow are
-/// straight lines between the shadows of the corners.
+/// Returns the part of the outline, in plan, in which the incident beam meets the surface. Only the corners of the beam
+/// are projected onto the surface. The edges between them are approximated by straight lines in plan.
 Polygon lit_outline(const EntranceSurface& surface, const Polygon& outline, const geometry::TouchingPlane& beam_plane,
                     const Vec3& to_source) {
   Polygon shifted;

@@ -11,19 +11,20 @@
 
 namespace retrace::raytrace {
 
-/// Returns the intensity per steradian of the light that a surface reflects towards a receiver, averaged over the discs
-/// of source and receiver, as a fraction of the incident light. The light is described by geometrical optics. Light
-/// that meets the surface again is treated as if it did not.
+/// Returns the power per steradian that a surface reflects towards a receiver, as a fraction of the incident power. It
+/// is averaged over the discs of source and receiver, and computed by geometrical optics. Reflected light that would
+/// meet the surface again is not followed; it counts as if it had a free path.
 /// \param outline convex outline of the part
 /// \param beam_plane plane that touches the surface from above. The incident beam covers the outline in this plane.
-/// \param reflectance power that the surface reflects, for a unit normal of the surface in the part frame
+/// \param reflectance function that returns the reflected fraction of the power for a unit normal of the surface (part
+///     frame)
 double reflected_per_sr(const geometry::EntranceSurface& surface, const geometry::Polygon& outline,
                         const geometry::TouchingPlane& beam_plane, const geometry::Vec3& to_source,
                         const geometry::Vec3& receiver, const ApertureKernel& kernel,
                         const std::function<double(const geometry::Vec3& normal)>& reflectance);
 
 /// Calls visit(direction, power) for points of the surface on a grid. The sum of all powers is the power that the
-/// surface reflects, as a fraction of the incident light. Parameters are those of reflected_per_sr().
+/// surface reflects, as a fraction of the incident light. The other parameters are those of reflected_per_sr().
 /// \param columns number of points along each side of the outline's bounding box
 void visit_reflected(const geometry::EntranceSurface& surface, const geometry::Polygon& outline,
                      const geometry::TouchingPlane& beam_plane, const geometry::Vec3& to_source, std::size_t columns,

@@ -12,14 +12,14 @@
 namespace retrace::raytrace {
 namespace {
 
-// Position of the compared rays between the centroid (0) and the corners (1) of a beam.
+// Position of the compared rays on the lines from the centroid (0) to the corners (1) of a beam.
 constexpr double kTowardsCorner = 0.9;
 
-/// Light that leaves the part, as a wave at a point of the tangent plane.
+/// Light that has left the part, described at a point of the tangent plane.
 struct OutgoingRay {
   Vec2 at_mm;  ///< intersection with the tangent plane, relative to the centre of the excerpt
   Vec2 cosines;
-  double path_mm = 0.0;  ///< optical path up to this point, with the phase 0 of ReturnedBeam::phase_mm
+  double path_mm = 0.0;  ///< optical path up to this point, with the same origin as ReturnedBeam::phase_mm
 };
 
 /// Follows rays through the curved surface, along the reflections of a beam. Coordinates are those of ReturnedBeam.
@@ -29,7 +29,7 @@ class RayFollower {
               const PathIsometry& path)
       : surface_(surface), scene_(scene), beam_(beam), path_(path) {}
 
-  /// \param entry_mm point where the undeviated ray crosses the tangent plane
+  /// \param entry_mm point at which the incident ray would cross the tangent plane without refraction
   std::optional<OutgoingRay> follow(const Vec2& entry_mm) const {
     const Vec3 down = -scene_.to_source;
     const std::optional<Met> in = met({entry_mm.x(), entry_mm.y(), 0.0}, down);
@@ -80,7 +80,7 @@ class RayFollower {
   const PathIsometry& path_;
 };
 
-/// Optical path and direction of the model at a point of the tangent plane.
+/// Optical path and direction at a point of the tangent plane, according to the model of tangent planes.
 struct ModelWave {
   double path_mm = 0.0;
   Vec2 cosines;

@@ -19,11 +19,11 @@ class TangentError {
   void add_failure();
 
   std::size_t rays() const { return rays_; }
-  /// Returns the root mean square of the difference between the optical paths, except for a constant of each beam, in
-  /// mm. Each beam has the weight of its power.
+  /// Returns the root mean square difference between the optical path lengths, in mm, after the mean difference of each
+  /// beam has been subtracted. Beams are weighted by their power.
   double path_rms_mm() const;
-  /// Returns the root mean square of the angle between the directions in which the light leaves, in rad. Each beam has
-  /// the weight of its power.
+  /// Returns the root mean square angle between the directions in which the light leaves, in rad. Beams are weighted by
+  /// their power.
   double angle_rms_rad() const;
   /// Returns the maximum angle between the directions in which the light leaves, in rad.
   double max_angle_rad() const { return max_angle_rad_; }
