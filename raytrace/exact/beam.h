@@ -103,7 +103,8 @@ struct TexturedHit {
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
   FacetFrame frame;  ///< frame in which the form of the facet is defined
-  /// Form of the surface, which must outlive the beam. Null: the form of all retro facets (Optics::facet_form).
+  /// Form of the surface. It must outlive the beam. If it is null, the surface has the form of all retro facets
+  /// (Optics::facet_form).
   const surface_models::FacetForm* form = nullptr;
   /// Change of the optical path per height of the form. Heights that point out of the part are positive. The value is 0
   /// for facets without form.

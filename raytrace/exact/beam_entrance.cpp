@@ -133,8 +133,8 @@ void divide_by_step(const Vec2& step, Division& into) {
   }
 }
 
-/// Divides a beam into fragments. Each fragment also represents all its copies, which are displaced by multiples of the
-/// period of the array.
+/// Divides a beam into fragments. Each fragment also represents its copies, which are displaced by multiples of the
+/// period.
 /// \param most_step maximum size of a fragment
 /// \pre the entrance face is a rectangle with sides along the x and y axes
 void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into) {
@@ -221,8 +221,8 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
   return entered;
 }
 
-/// Divides the incident beam of a part with notches or holes. Polygon k of the entrance face is region k of the
-/// symmetry. Returns the fraction of the light that has entered.
+/// Divides the incident beam of a part with notches or holes. The symmetry of such a part has one region for each
+/// polygon of the entrance face, in the same order. Returns the fraction of the light that has entered.
 double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& queue) {
   double face_mm2 = 0.0;
   for (const geometry::Polygon& piece : scene.part.entrance_pieces) face_mm2 += geometry::area(piece);

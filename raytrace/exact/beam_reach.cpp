@@ -13,9 +13,10 @@ constexpr double kReachInElements = 4.0;
 // Maximum step length, in element sizes, of a beam that represents several copies. It is shorter than kReachInElements,
 // so that fewer copies reach a border within the step.
 constexpr double kReachOfShared = 2.0;
-// Maximum distance, in element sizes, at which the highest corner of a descending beam may enter the layer of elements.
-// Within this distance, a step is measured from the entrance of the highest corner, otherwise from that of the lowest
-// corner. A horizontal beam above the layer never enters it and meets no facet.
+// Limit, in element sizes, for the distance after which all corners of a descending beam are in the layer of elements.
+// Below this limit, the length of a step is measured from the point where the highest corner enters the layer. Above
+// this limit, it is measured from the point where the lowest corner enters. A horizontal beam above the layer never
+// enters it and meets no facet.
 constexpr double kFarInElements = 64.0;
 
 /// Returns the minimum and maximum distance from a beam's corners to the sides and, if it rises, to the entrance face.

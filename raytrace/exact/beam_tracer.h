@@ -59,8 +59,8 @@ struct BeamPolicy {
   /// the textured facets that it has met, from which the far field computes specular and scattered light. It is allowed
   /// only for textures for which has_phases() is true.
   bool keeps_phases = false;
-  /// If true, light that reaches the sides of the outline is not traced further. Its power is added to `side_exit`.
-  /// It is used for a section of a larger part, which continues beyond the outline.
+  /// If true, light that reaches the sides of the outline is not traced further. Its power is added to `side_exit`. Use
+  /// this for an excerpt of a larger part that continues beyond the outline.
   bool ends_at_sides = false;
 };
 

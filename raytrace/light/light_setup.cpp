@@ -186,8 +186,8 @@ std::size_t LightSetup::cone_of(const Vec3& direction, const Vec3& back) const {
   return k;
 }
 
-/// Returns the light after it has met the entrance face.
-/// \param arriving light in front of the face
+/// Returns the light that enters through the entrance face and the light that the face reflects.
+/// \param arriving incident light directly in front of the face
 LightSetup::Entry LightSetup::enter(const CoherentLight& arriving) const {
   const Vec3 down = -to_source;
   const double ratio = 1.0 / optics.index;

@@ -32,7 +32,8 @@ struct LightSetup {
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
-  /// Light of the beam, which travels along -to_source. If all shells are plane-parallel, it is the light behind them.
+  /// Light of the incident beam, which travels along -to_source. If all shells are plane-parallel, this is the light
+  /// behind the shells. Otherwise, it is the light in front of them.
   Light incident;
   ShellLosses arrival_losses;             ///< power that plane-parallel shells take from the incident light
   const DirectionScore* score = nullptr;  ///< function that is summed over the light that leaves; may be null
@@ -62,7 +63,8 @@ struct LightSetup {
   };
   Entry entry;
 
-  /// Reduces light that leaves through the entrance face to the light that plane-parallel shells transmit.
+  /// Reduces light that has left through the entrance face by the losses in plane-parallel shells. Returns these
+  /// losses.
   /// \param direction direction of the light in air
   /// \pre !deflect(optics.shells)
   template <class AnyLight>
@@ -94,8 +96,8 @@ struct Tally {
   std::uint64_t segments = 0;              ///< number of straight ray segments traced
   std::uint64_t misses = 0;                ///< number of rays that missed every face although faces surround them
   void add(const Tally& more);
-  /// Adds power that light has lost in shells to the accounts.
-  /// \param missed account of the light that has missed a surface of a shell
+  /// Adds the power that light has lost in shells to the accounts.
+  /// \param missed account to which ShellLosses::missed is added
   /// \param factor factor by which the losses are multiplied
   void add(const ShellLosses& losses, Account missed, double factor = 1.0);
   /// Sets all sums to 0.

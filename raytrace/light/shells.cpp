@@ -11,8 +11,8 @@
 namespace retrace::raytrace {
 namespace {
 
-// Distance, relative to the distance from the vertex, by which rounding may place a ray beyond the surface that it
-// meets next.
+// Maximum distance by which a ray may start beyond the surface that it meets next, because of rounding errors. It is a
+// fraction of the distance between the start of the ray and the vertex of the surface.
 constexpr double kRounding = 1e-9;
 
 /// Point at which a ray crosses a surface.
@@ -21,7 +21,8 @@ struct Crossing {
   Vec3 normal = Vec3::UnitZ();  ///< unit normal on the side of the source
 };
 
-/// Returns the crossing of a line with a surface, in the direction that `passage` requires. `t_mm` may be negative.
+/// Returns the point at which a line crosses a surface in the direction of `passage` (towards the part or away from
+/// it). Crossing::t_mm may be negative.
 ///
 /// The points p of the surface, relative to its vertex, satisfy 2 p.N + c p.p = 0, with the normal N at the vertex and
 /// the curvature c. The unit normal at p is N + c p. The root is written in a form that remains accurate for c = 0 (G.
@@ -40,12 +41,12 @@ std::optional<Crossing> crossing_of(const ShellSurface& surface, const Vec3& pos
   if (divisor == 0.0) return std::nullopt;
   const double t = offset / divisor;
   const Vec3 normal = surface.normal + c * (from + t * direction);
-  // The second hemisphere of a sphere is not a part of the surface.
+  // Only the hemisphere around the vertex belongs to the surface.
   if (!std::isfinite(t) || !(normal.dot(surface.normal) > 0.0)) return std::nullopt;
   return Crossing{t, normal.normalized()};
 }
 
-/// Refracts light at a surface. Returns the direction behind it, or nothing if the light is totally reflected.
+/// Refracts light at a surface. Returns the direction behind the surface, or nothing if the light is totally reflected.
 /// \param facing_normal unit normal that faces the light
 /// \param ratio refractive index before the surface divided by the index behind it
 template <class AnyLight>
@@ -90,15 +91,17 @@ void pass_plate(const Shell& shell, ShellPassage passage, const Vec3& direction,
   refract(*inside, facing, shell.index, light, losses);
 }
 
-/// Calls pass(shell) for all shells in the order in which light crosses them, until it returns false.
+/// Calls pass(shell) for each shell in the order in which light crosses the shells. Stops and returns false if a call
+/// returns false.
 template <class Pass>
 bool in_order(const Shells& shells, ShellPassage passage, const Pass& pass) {
   return passage == ShellPassage::to_part ? std::all_of(shells.begin(), shells.end(), pass)
                                           : std::all_of(shells.rbegin(), shells.rend(), pass);
 }
 
-/// Traces a ray to the next surface and through it.
-/// \param is_first true for the surface that light from the source meets first; a ray may start behind it
+/// Traces a ray to the next surface and through this surface. Returns true if light passes the surface.
+/// \param is_first true for the surface that light from the source meets first. If a ray starts behind this surface, it
+///     is moved back to the surface.
 /// \param ratio refractive index before the surface divided by the index behind it
 /// \param within shell in which the ray travels to the surface, or null in air
 bool cross(const ShellSurface& surface, ShellPassage passage, bool is_first, double ratio, const Shell* within,

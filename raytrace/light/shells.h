@@ -53,7 +53,7 @@ struct ShellLosses {
   double missed = 0.0;     ///< light that misses a surface of a shell; it is not followed
 };
 
-/// Reduces `light` to the light that plane-parallel shells transmit.
+/// Reduces `light` by the losses in plane-parallel shells. Returns these losses.
 /// \param light light of any class with Stokes parameters: Light or CoherentLight
 /// \param direction direction of the light in air
 /// \pre !deflect(shells)
@@ -67,8 +67,8 @@ struct ShellRay {
   Light light;
 };
 
-/// Traces a ray through all shells. If the ray passes, its position is on the last surface. If it is totally reflected
-/// or misses a surface, all its power is added to the losses.
+/// Traces a ray through all shells. Afterwards, the position of a ray that passes is on the last surface. If a ray is
+/// totally reflected or misses a surface, all its power is added to the losses.
 /// \return true if the ray passes all shells
 bool pass_shells(const Shells& shells, ShellPassage passage, ShellRay& ray, ShellLosses& losses);
 
@@ -78,7 +78,7 @@ bool is_in_front(const ShellSurface& surface, const Vec3& position_mm);
 /// Returns true if a ray meets a surface from the source side.
 bool meets(const ShellSurface& surface, const Vec3& position_mm, const Vec3& direction);
 
-/// Returns the height of a surface above a point of the plan, or NaN if the surface does not extend to this point.
+/// Returns the height of a surface at a point in plan, or NaN if the surface does not extend to this point.
 double height_mm(const ShellSurface& surface, const Vec2& point_mm);
 
 }  // namespace retrace::raytrace

@@ -125,8 +125,8 @@ class Follower {
     return meet(entrance_normal, geometry::FacetRole::entrance, setup_.optics.index);
   }
 
-  /// Returns the point at which the light meets the entrance face from inside, or nothing if it does not within
-  /// `limit`.
+  /// Returns the point at which the light meets the entrance face from inside. Returns nothing if there is no such
+  /// point within the distance `limit`.
   std::optional<EntranceHit> reach_entrance(double limit) const {
     if (entrance_face_ != nullptr)
       return entrance_face_->first_hit({position_, direction_, entrance_source_, true, limit});

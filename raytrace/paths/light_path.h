@@ -48,9 +48,10 @@ struct LightPath {
 /// Function that returns the first facet that a ray meets, or nothing if it meets none.
 using HitFinder = std::function<std::optional<SurfaceHit>(const SurfaceRay& ray)>;
 
-/// Traces a single path from a point of the entrance face. With a curved entrance face, it is a point of the horizontal
-/// plane that touches the face from above. At every interface, the path continues with the stronger of
-/// the reflected and the transmitted light. The path is meant for drawings and does not show how the power is split.
+/// Traces a single path from a point of the entrance face. If the face is curved, the path starts on the plane that
+/// touches the face from above (EntranceFace::beam_height_mm()). At every interface, the path continues with the
+/// stronger of the reflected and the transmitted light. The path is meant for drawings and does not show how the power
+/// is split.
 /// \param first_hit finds facets of the part, in coordinates with the origin `centre_mm`
 /// \param cone_deg half angle of the acceptance cone
 /// \param entrance_face curved entrance face with the origin `centre_mm`; null for the plane face

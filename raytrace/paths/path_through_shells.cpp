@@ -6,7 +6,8 @@
 
 namespace retrace::raytrace {
 
-/// Traces a path through all shells. If it does not pass, its power is added to the accounts.
+/// Traces a path through all shells, and adds the losses in the shells to the accounts. Returns true if the path passes
+/// all shells.
 bool PathWalker::pass_shells(ShellPassage passage, State& state) {
   const Vec3 middle(0.0, 0.0, setup_.middle_height_mm);
   ShellRay ray{state.position - middle, state.direction, state.light};
@@ -20,7 +21,7 @@ bool PathWalker::pass_shells(ShellPassage passage, State& state) {
 }
 
 /// Starts a path of the incident beam in front of shells that change its direction.
-/// \param start_mm point of the region of the beam, see LitRegion
+/// \param start_mm point of the LitRegion, in which the incident beam starts
 void PathWalker::enter_through_shells(const Vec2& start_mm) {
   State state;
   state.position = {start_mm.x(), start_mm.y(), setup_.middle_height_mm + setup_.lit_region->height_mm()};
@@ -43,7 +44,7 @@ void PathWalker::enter_through_shells(const Vec2& start_mm) {
     arrive_at_entrance(state);
     return;
   }
-  // A shell may extend below the highest point of a curved entrance surface.
+  // If a shell extends below the highest point of the entrance surface, the path starts at the shell.
   if (to_face > 0.0) state.position = on_face;
   state.above = true;
   pending_.push_back(state);

@@ -29,7 +29,7 @@ struct PathSetup : LightSetup {
   const BackSurface& surface;
   const EntranceFace* entrance_face = nullptr;  ///< curved entrance face; null for the plane z = thickness_mm
   std::optional<ContaminatedEntrance> contaminated_entrance;  ///< set if the plane entrance face scatters light
-  std::optional<LitRegion> lit_region;  ///< set if shells change the direction of light: region of the incident beam
+  std::optional<LitRegion> lit_region;  ///< region of the incident beam; set if shells deflect light
   double middle_height_mm = 0.0;        ///< height of the entrance surface at the middle of the part, see Shell
   PathPolicy policy;
   Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
@@ -75,9 +75,9 @@ class PathWalker {
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 
   /// Traces light of power 1 that comes from any direction: from above, from a side, from below, or from a point inside
-  /// the part. Light that starts in front of the outermost shell passes the shells first; all other light starts behind
-  /// them. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction to the
-  /// source. Light that the first face reflects from outside is a branch of the path. Its power is added to
+  /// the part. Light that starts in front of the outermost shell crosses the shells first. All other light starts
+  /// behind the shells. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction
+  /// to the source. Light that the first face reflects from outside is a branch of the path. Its power is added to
   /// `front_specular` at the entrance face, to `side_exit` at sides, and to `transmitted` at the back.
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
@@ -138,7 +138,7 @@ class PathWalker {
   void leave(const State& state, const Light& light, const Vec3& direction);
   void record_return(const State& state, const Light& light, const Vec3& direction);
   void record_front_reflection(const State& state, const Light& light, const Vec3& direction);
-  /// Result for a ray from outside at the shells: it does not meet them, it passes all of them, or it ends there.
+  /// Result for a ray from outside: it does not meet the shells, it passes all of them, or it ends at one of them.
   enum class ShellEntry { outside, passed, stopped };
   ShellEntry enter_shells(State& state);
   void enter_through_shells(const Vec2& start_mm);

@@ -9,11 +9,10 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of parts into which the border of the entrance face is divided. The sides of the region are curved behind
-// lenses, and are replaced by chords.
+// Approximate number of chords that replace the border of the region. For lenses, the true border is curved.
 constexpr double kBorderChords = 256.0;
 constexpr int kMaxNewtonSteps = 50;
-// Accuracy of the corners, and step of difference quotients, relative to the size of the part.
+// Accuracy of the corners of the region, and step of difference quotients, relative to the size of the part.
 constexpr double kCornerAccuracy = 1e-12, kDifferenceStep = 1e-5;
 
 /// Path of the light of a beam from a plane in front of the shells to the plane of the entrance face.
@@ -30,13 +29,13 @@ class BeamPath {
     return on_plane(ray.position_mm, ray.direction, to_mm_);
   }
 
-  /// Returns the start of the light that would reach a point if there were no shells.
+  /// Returns the point from which light would reach the point `end` if there were no shells.
   Vec2 straight_start_of(const Vec2& end) const {
     return on_plane(Vec3(end.x(), end.y(), to_mm_), direction_, from_mm_);
   }
 
-  /// Returns the start of the light that reaches a point of the face, by Newton's method. If no light reaches the
-  /// point, returns straight_start_of().
+  /// Returns the point from which light reaches the point `end` of the face, by Newton's method. If no such point is
+  /// found, returns straight_start_of().
   Vec2 start_of(const Vec2& end) const {
     Vec2 start = straight_start_of(end);
     for (int step = 0; step < kMaxNewtonSteps; ++step) {
@@ -56,7 +55,7 @@ class BeamPath {
     return from.head<2>() + (height_mm - from.z()) / direction.z() * direction.head<2>();
   }
 
-  /// Returns the derivative of the end by the start, from difference quotients.
+  /// Returns the derivative of the end point with respect to the start point, from difference quotients.
   std::optional<Eigen::Matrix2d> slope_at(const Vec2& start, const Vec2& end) const {
     const double step_mm = kDifferenceStep * size_mm_;
     Eigen::Matrix2d slope;
@@ -75,7 +74,8 @@ class BeamPath {
   double size_mm_;
 };
 
-/// Returns points on the border of a polygon, including its corners, in steps of about 1 / kBorderChords of the border.
+/// Returns points on the border of a polygon, including its corners. Their spacing is about 1 / kBorderChords of the
+/// length of the border.
 geometry::Polygon with_points_on_sides(const geometry::Polygon& polygon) {
   double border_mm = 0.0;
   for (std::size_t k = 0; k < polygon.size(); ++k) border_mm += (polygon[(k + 1) % polygon.size()] - polygon[k]).norm();

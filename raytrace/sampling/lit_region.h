@@ -11,9 +11,9 @@
 
 namespace retrace::raytrace {
 
-/// Region of a horizontal plane, at the height of the vertex of the outermost shell, which the incident beam covers.
-/// The light from this region reaches the whole entrance face, and no other light does. The border of the region is a
-/// polygon. Its corners are the points from which light reaches points on the border of the face.
+/// Region that the incident beam covers in the horizontal plane through the vertex of the outermost shell. Light from
+/// this region reaches all points of the entrance face, and light from outside of the region reaches none. The border
+/// of the region is a polygon. Light from its corners reaches the border of the face.
 class LitRegion {
  public:
   /// \param to_source unit vector to the source; z > 0

@@ -16,7 +16,7 @@ class TriangleSampler {
 
   TriangleSampler() = default;
   /// \param triangles triangles with counter-clockwise corners; at least one has an area above 0
-  /// \param area_mm2 sum of their areas
+  /// \param area_mm2 sum of the areas of all triangles
   TriangleSampler(std::vector<Triangle> triangles, double area_mm2);
 
   /// Maps the unit square onto the triangles and preserves ratios of areas.
