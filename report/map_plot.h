@@ -38,7 +38,7 @@ struct MapPlot {
   std::string axis_unit;      ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
   std::string value_label;    ///< label of the colour bar, which starts at 0
   std::string hatched_label;  ///< meaning of hatched areas
-  /// Upper end of the colour bar. A smaller value is used if no value of the map exceeds half of it.
+  /// Upper end of the colour bar. If no value of the map exceeds half of this number, a smaller number is used.
   double full_value = 1.0;
   std::vector<MapPanel> panels;
 };

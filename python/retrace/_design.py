@@ -182,7 +182,7 @@ class Design:
 
     @property
     def source(self) -> str:
-        """Name of the design file. If there is no file, the text that replaces it in messages."""
+        """Name of the design file. Without a file, the text that replaces the name in messages."""
         return self._core.source
 
     @property

@@ -147,8 +147,8 @@ def rays(
 ) -> RaysResult:
     """Traces the rays of a file or an emitter through a part, like the command `retrace rays`.
 
-    out: file for the rays that leave, .tm25ray or .csv. If no file is given, only
-    the power is summed."""
+    out: file for the rays that leave, .tm25ray or .csv. If no file is given, only the power
+    is summed."""
     taken = design_of(design)
     if (source is None) == (emitter is None):
         raise InputError("one of source and emitter must be given", key="source")

@@ -22,7 +22,7 @@ class Field(NamedTuple):
     meaning: str
 
 
-#: Fields of a request by the keywords of a Python function.
+#: Dict from the keywords of a Python function to the fields of a request.
 Fields = dict[str, Field]
 
 

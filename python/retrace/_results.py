@@ -206,7 +206,8 @@ class Columns(Mapping[str, Any]):
         return html_table(self.rows)
 
     def flat(self, prefix: str = "") -> dict[str, Any]:
-        """Returns all columns. The column `key` of an inner table `table` is named table_key."""
+        """Returns all columns. The name of a column of an inner table is `table_key`, where
+        `table` is the name of the inner table."""
         flat: dict[str, Any] = {}
         for name in self._names:
             column = self[name]

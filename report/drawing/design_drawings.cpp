@@ -70,7 +70,7 @@ std::string shells_svg(const design::Design& design, const studies::ShellSection
   };
   for (std::size_t k = 0; k < section.shells.size(); ++k) add(fmt::format("shell {}", k + 1), section.shells[k]);
   add("part", section.part);
-  // Equal scales: the axis that is too long for the plot determines the scale.
+  // The scale is the same for both axes. The axis that needs the smaller scale determines it.
   const Range lengths = drawable(extent_of(x).value_or(Range{0.0, 1.0}));
   const Range heights = drawable(extent_of(z).value_or(Range{0.0, 1.0}));
   constexpr double kFilledLength = 0.92;

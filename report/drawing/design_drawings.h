@@ -19,9 +19,9 @@ struct DesignDrawings {
   Warnings warnings = {};
 };
 
-/// Returns the plan, the section and the view of a design, and the profile of a curved entrance face. Shells have a
-/// section of their own. A design with balls has no drawings. A design with elements on a substrate (a curved surface)
-/// has only the view, because the plan and the section cannot show true lengths.
+/// Returns the plan, the section and the view of a design, and the profile of a curved entrance face. Shells are shown
+/// in an additional section. A design with balls has no drawings. A design with elements on a substrate (a curved
+/// surface) has only the view, because the plan and the section cannot show true lengths.
 DesignDrawings design_drawings(const studies::Inspection& inspection);
 
 }  // namespace retrace::report

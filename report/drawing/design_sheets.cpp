@@ -155,7 +155,7 @@ void draw_section_marks(SvgGroup& group, Point left, Point right) {
   group.reserve({left.x - beyond - 14.0, left.y - 16.0}, {14.0, 12.0});
 }
 
-/// Returns the outer border of a part, and the borders of its holes.
+/// Returns the outer border of a part and the borders of its holes, in drawing coordinates.
 std::vector<std::vector<Point>> borders_on_paper(const Polygon& outer_mm, const PlanPanel& panel, const ToPaper& at) {
   std::vector<std::vector<Point>> borders = {on_paper(outer_mm, at)};
   for (const geometry::PolygonLoop& hole : panel.holes_mm) borders.push_back(on_paper(hole, at));
