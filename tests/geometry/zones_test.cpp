@@ -440,10 +440,10 @@ ZonedSpec outlined_plate(const Outline& outline, double margin_mm, std::vector<P
   return spec;
 }
 /// Returns a part without zones that has the outline of a plate with zones.
-Part alone(PartSpec spec, const ZonedSpec& zoned) {
+Part part_without_zones(PartSpec spec, const ZonedSpec& zoned) {
   spec.array.outline = zoned.outline;
   spec.array.x_offset_mm = spec.array.y_offset_mm = zoned.outline->margin_mm;
-  return alone(spec, zoned.size_mm);
+  return part_without_zones(spec, zoned.size_mm);
 }
 Outline notched() {
   return oriented({rounded(
@@ -478,7 +478,7 @@ TEST(ZonesWithOutline, OneZoneIsThePartItself) {
         PartSpec kind = hexagons(0.5);
         kind.array.partial_elements = partial;
         ZonedSpec spec = outlined_plate(outline, margin_mm, {{{}, 0.0, kind}});
-        const Part part = alone(kind, spec);
+        const Part part = part_without_zones(kind, spec);
         spec.zones[0].regions = {box(0, 0, spec.size_mm.x(), spec.size_mm.y())};
         ZonedSpec by_cell = spec;
         by_cell.is_by_cell = true;
