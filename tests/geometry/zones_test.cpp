@@ -439,11 +439,12 @@ ZonedSpec outlined_plate(const Outline& outline, double margin_mm, std::vector<P
   spec.outline = plan;
   return spec;
 }
+
 /// Returns a part without zones that has the outline of a plate with zones.
 Part part_without_zones(PartSpec spec, const ZonedSpec& zoned) {
   spec.array.outline = zoned.outline;
   spec.array.x_offset_mm = spec.array.y_offset_mm = zoned.outline->margin_mm;
-  return part_without_zones(spec, zoned.size_mm);
+  return alone(spec, zoned.size_mm);
 }
 Outline notched() {
   return oriented({rounded(
