@@ -117,8 +117,8 @@ void CellEntrance::meet_bare(const CellStep& step) {
   descend(scattered, step.streams, run);
 }
 
-// The following functions process rays one by one. They are used for entrance faces with layers, behind shells and for
-// entrance faces that scatter. The computations take so long that SIMD would save little time.
+// The following functions process rays one by one. They are used if the entrance face has layers or scatters light, or
+// if there are shells. Their computations are so expensive that SIMD would save little time.
 
 /// Returns ray k at the entrance face. The power that the material absorbs on the path to the face is added to the
 /// ledger.

@@ -221,8 +221,8 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
   return entered;
 }
 
-/// Divides the incident beam of a part with notches or holes. The symmetry of such a part has one region for each
-/// polygon of the entrance face, in the same order. Returns the fraction of the light that has entered.
+/// Divides the incident beam of a part with notches or holes into fragments. The symmetry of such a part has one region
+/// for each polygon of the entrance face, in the same order. Returns the fraction of the light that has entered.
 double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& queue) {
   double face_mm2 = 0.0;
   for (const geometry::Polygon& piece : scene.part.entrance_pieces) face_mm2 += geometry::area(piece);

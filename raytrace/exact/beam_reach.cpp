@@ -13,10 +13,10 @@ constexpr double kReachInElements = 4.0;
 // Maximum step length, in element sizes, of a beam that represents several copies. It is shorter than kReachInElements,
 // so that fewer copies reach a border within the step.
 constexpr double kReachOfShared = 2.0;
-// Limit, in element sizes, for the distance after which all corners of a descending beam are in the layer of elements.
-// Below this limit, the length of a step is measured from the point where the highest corner enters the layer. Above
-// this limit, it is measured from the point where the lowest corner enters. A horizontal beam above the layer never
-// enters it and meets no facet.
+// Limit, in element sizes, for the distance that a descending beam travels until all its corners are in the layer of
+// elements. Up to this limit, the length of a step is measured from the point where the highest corner enters the
+// layer. Beyond this limit, it is measured from the point where the lowest corner enters. A horizontal beam above the
+// layer never enters it and meets no facet.
 constexpr double kFarInElements = 64.0;
 
 /// Returns the minimum and maximum distance from a beam's corners to the sides and, if it rises, to the entrance face.

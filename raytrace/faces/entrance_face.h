@@ -34,8 +34,8 @@ class EntranceFace {
   /// Returns the minimum height over the outline; highest_mm() returns the maximum height.
   double lowest_mm() const { return range_.lowest_mm; }
   double highest_mm() const { return range_.highest_mm; }
-  /// Returns the height, at a position, of the plane that touches the surface from above. In this plane, the incident
-  /// beam covers exactly the outline of the part. The plane is horizontal unless the surface is inclined.
+  /// Returns the height, at a given position, of the plane that touches the surface from above. In this plane, the
+  /// incident beam covers exactly the outline of the part. The plane is horizontal unless the surface is inclined.
   double beam_height_mm(const Vec2& position_mm) const { return range_.beam_height_mm(position_mm + centre_mm_); }
   /// Returns the height of the surface at the middle of the part, which is the centre of the outline's bounding box. If
   /// the outline does not contain this point, returns the maximum height.

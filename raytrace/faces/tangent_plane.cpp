@@ -10,7 +10,7 @@ namespace retrace::raytrace {
 namespace {
 
 constexpr int kMaxNewtonSteps = 60;
-// Iterations for intersections and entry points stop when a step is shorter than this.
+// Step length below which the iterations for intersections and entry points stop.
 constexpr double kAccuracy_mm = 1e-11;
 // Degree of the polynomial that describes the height above the tangent plane, and number of sample points along each
 // axis.
@@ -29,7 +29,7 @@ bool is_defined(const geometry::EntranceSurface::SurfaceSample& sample) {
   return std::isfinite(sample.height_mm) && sample.slope.allFinite();
 }
 
-/// Returns the horizontal displacement of light per change of height.
+/// Returns the horizontal displacement (x, y) of a ray per unit increase of z.
 Vec2 lean(const Vec3& direction) {
   return direction.head<2>() / direction.z();
 }
@@ -62,7 +62,8 @@ std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, con
     if (!is_defined(sample)) return std::nullopt;
     const Vec3 direction = refracted_inside(sample.slope, to_source, index);
     if (!(direction.z() < 0.0)) return std::nullopt;
-    // Next point: the intersection of the tangent plane at `at` with the line through the target along `direction`.
+    // The next point is the intersection of the tangent plane at `at` with the line through the target along
+    // `direction`.
     const Vec2 per_height = lean(direction);
     const double rise = (sample.height_mm - target_mm.z() + sample.slope.dot(target_mm.head<2>() - at)) /
                         (1.0 - sample.slope.dot(per_height));

@@ -40,17 +40,17 @@ Vec3 refracted_inside(const Vec2& slope, const Vec3& to_source, double index);
 std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, const Vec3& target_mm,
                                    const Vec3& to_source, double index);
 
-/// Returns the illuminance behind the surface, divided by the illuminance behind its tangent plane. Both illuminances
-/// are on a horizontal plane. The concentration is computed from the directions in which neighbouring rays are
-/// refracted. Returns nothing if the surface is not defined around the tangent point, or if the rays cross each other
-/// before they reach the plane.
+/// Returns the ratio of the illuminance behind the surface to the illuminance behind its tangent plane, both on the
+/// same horizontal plane. The ratio is computed from the directions of neighbouring rays after refraction. Returns
+/// nothing if the surface is not defined around the tangent point, or if the rays cross each other before they reach
+/// the horizontal plane.
 /// \param height_mm height of the horizontal plane
 /// \param step_mm distance of the neighbouring rays from the tangent point
 std::optional<double> concentration(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                     const Vec3& to_source, double index, double height_mm, double step_mm);
 
-/// Returns the height above a plane that a ray towards the source gains per unit of length. The product of this value
-/// and an area in plan is the cross-section of the light that crosses the plane within this area.
+/// Returns the increase of the height above a plane, along z, per unit length of a ray towards the source. Light that
+/// crosses the plane within an area in plan has a cross-section equal to this area times the returned value.
 double rise_above(const geometry::TouchingPlane& plane, const Vec3& to_source);
 
 /// Intersection of a line with the surface.
@@ -79,9 +79,10 @@ struct SurfaceSag {
 std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                      double half_width_mm);
 
-/// Returns the squared gradient of the height of a surface, perpendicular to the direction of light. It is a polynomial
-/// in the coordinates of the point where the light meets the tangent plane. Terms of `sag` above degree 5 are ignored.
-/// \param per_height horizontal displacement of the light per change of height, in the frame of the tangent plane
+/// Returns the squared gradient of the height of a surface above its tangent plane. The gradient is taken perpendicular
+/// to the direction of the light. The result is a polynomial in the coordinates of the point where the light meets the
+/// tangent plane. Terms of `sag` above degree 5 are ignored.
+/// \param per_height displacement (x, y) of the light per unit increase of z, in the frame of the tangent plane
 surface_models::FacetForm squared_slope(const SurfaceSag& sag, const Vec2& per_height);
 
 }  // namespace retrace::raytrace

@@ -15,7 +15,7 @@ struct ExitEvent {
   const Vec3& position;
   const Vec3& direction;             ///< unit vector in air
   const Light& light;                ///< its power is a fraction of the power at the start of the path
-  Vec2 shift_mm = Vec2::Zero();      ///< infinite parts: vector from `position` to the real position of the path
+  Vec2 shift_mm = Vec2::Zero();      ///< in an infinite part, vector from `position` to the real position of the path
   bool is_front_reflection = false;  ///< true if the outer side of the entrance face reflected the light
 
   bool is_through_entrance() const { return account != Account::side_exit && account != Account::transmitted; }

@@ -18,7 +18,7 @@ enum class Account : std::size_t {
   transmitted,         ///< left through facets, inner walls and flat parts of the back
   absorbed,
   truncated,  ///< not traced further: power below the cut-off, or too many interfaces
-  lost,       ///< missed every face from inside the part; 0 unless there is a defect
+  lost,       ///< missed every face although it was inside the part; 0 unless there is a defect
   /// reflected at surfaces of shells (separate lenses in front of the part), and not traced further; 0 without shells
   shell_reflected
 };

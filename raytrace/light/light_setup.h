@@ -35,7 +35,7 @@ struct LightSetup {
   /// Light of the incident beam, which travels along -to_source. If all shells are plane-parallel, this is the light
   /// behind the shells. Otherwise, it is the light in front of them.
   Light incident;
-  ShellLosses arrival_losses;             ///< power that plane-parallel shells take from the incident light
+  ShellLosses arrival_losses;             ///< power that the incident light loses in plane-parallel shells
   const DirectionScore* score = nullptr;  ///< function that is summed over the light that leaves; may be null
   std::vector<double> cone_chord2;        ///< per cone: squared distance between unit vectors to its edge and its axis
 
@@ -59,7 +59,7 @@ struct LightSetup {
     /// of the reflected field is source_axis(reflected_direction).
     JonesMatrix reflected_jones = JonesMatrix::Zero();
     double absorbed = 0.0;         ///< power that the layers on the entrance face absorb
-    ShellLosses reflected_losses;  ///< power that plane-parallel shells take from the reflected light
+    ShellLosses reflected_losses;  ///< power that the reflected light loses in plane-parallel shells
   };
   Entry entry;
 

@@ -99,7 +99,7 @@ bool in_order(const Shells& shells, ShellPassage passage, const Pass& pass) {
                                           : std::all_of(shells.rbegin(), shells.rend(), pass);
 }
 
-/// Traces a ray to the next surface and through this surface. Returns true if light passes the surface.
+/// Traces a ray to a surface and refracts it there. Returns true if light passes the surface.
 /// \param is_first true for the surface that light from the source meets first. If a ray starts behind this surface, it
 ///     is moved back to the surface.
 /// \param ratio refractive index before the surface divided by the index behind it

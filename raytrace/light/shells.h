@@ -67,8 +67,8 @@ struct ShellRay {
   Light light;
 };
 
-/// Traces a ray through all shells. Afterwards, the position of a ray that passes is on the last surface. If a ray is
-/// totally reflected or misses a surface, all its power is added to the losses.
+/// Traces a ray through all shells. If the ray passes all of them, its position is on the last surface afterwards. If
+/// it is totally reflected or misses a surface, all its power is added to the losses.
 /// \return true if the ray passes all shells
 bool pass_shells(const Shells& shells, ShellPassage passage, ShellRay& ray, ShellLosses& losses);
 

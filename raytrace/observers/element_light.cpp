@@ -19,9 +19,10 @@ using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 constexpr std::size_t kMaxNeighbours = 48;
 // Maximum distance in plan between an element and the other cells of its excerpt, in element sizes.
 constexpr double kSurroundings = 1.5;
-// Half width of the square in which the surface is fitted, relative to the largest coordinate of shadow_of().
+// Half width of the square in which a polynomial is fitted to the surface, relative to the largest coordinate of the
+// polygon from shadow_of().
 constexpr double kFittedWidth = 1.25;
-// Distance between the rays that concentration() compares and the tangent point, in element sizes.
+// Distance from the tangent point to the rays that concentration() compares, in element sizes.
 constexpr double kConcentrationStep = 0.05;
 // Area below which a polygon counts as empty, as a fraction of the squared element size.
 constexpr double kEmptyArea = 1e-9;
@@ -35,8 +36,8 @@ constexpr double kMinThickness = 1e-5;
 // Maximum factor by which the curvature of the surface may increase or reduce the illuminance of an element.
 constexpr double kMaxConcentration = 2.0;
 
-/// Converts the half-space normal . p <= offset of the part frame to a half-plane of the tangent plane, in the frame of
-/// this plane.
+/// Returns the intersection of a tangent plane with the half-space normal . p <= offset, which is given in the part
+/// frame. The result is a half-plane in the frame of the tangent plane.
 HalfPlane half_plane_on(const TangentPlane& plane, const Vec3& normal, double offset) {
   const Vec3 own = plane.frame_from_part * normal;
   return {own.x(), own.y(), offset - normal.dot(plane.point_mm)};
@@ -77,7 +78,7 @@ struct ElementLight::Bounds {
     for (const HalfPlane& half : halves)
       if (!polygon.empty()) clip(polygon, half, merge_mm);
   }
-  /// Returns the part of a polygon that is illuminated.
+  /// Returns the illuminated portion of a polygon.
   FlatPolygon lit(FlatPolygon polygon) const {
     cut(polygon, of_part, merge_mm);
     return polygon;
@@ -125,15 +126,15 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
   Bounds bounds;
   bounds.merge_mm = kMerge * part_.size_mm;
   bounds.diameter_mm = diameter_mm_;
-  // A point below the plane of the incident beam is reached by light that crosses this plane at another position in
-  // plan. This is the displacement per height of the plane above the point.
+  // Light that reaches a point below the plane of the incident beam has crossed this plane at a different position in
+  // plan. The displacement in plan is `per_height` times the height of the plane above the point.
   const Vec2 per_height = to_source.head<2>() / rise_above(beam_plane_, to_source);
   for (std::size_t k = 0; k < part_.outline.size(); ++k) {
     const Vec2& a = part_.outline[k];
     const Vec2 along = part_.outline[(k + 1) % part_.outline.size()] - a;
     const Vec2 outward(along.y(), -along.x());
     bounds.of_part.push_back(half_plane_on(plane, {outward.x(), outward.y(), 0.0}, outward.dot(a)));
-    // The incident beam covers exactly the outline in the plane that touches the surface from above.
+    // In the plane that touches the surface from above, the incident beam covers exactly the outline.
     const double lean = outward.dot(per_height);
     const Vec2 in_plane = outward + lean * beam_plane_.slope;
     bounds.of_part.push_back(
@@ -228,8 +229,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
     }
   }
   made.outline = geometry::to_polygon(box);
-  // The exact engine divides the entrance face into fragments of the size of an element. With this size, each piece
-  // remains one fragment.
+  // The exact engine divides the entrance face into fragments of the size of an element. This element is so large that
+  // every polygon of the entrance face remains a single fragment.
   made.spec = {};
   made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
   made.entrance_area_mm2 = face_mm2;
@@ -263,8 +264,8 @@ Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, c
 
 namespace {
 
-/// Returns the hit that describes the phase shift by the curved surface for light that enters or leaves at the tangent
-/// plane.
+/// Returns a hit that describes the phase shift of the curved surface, for light that enters or leaves through the
+/// tangent plane.
 TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, double cos_outside) {
   TexturedHit hit;
   const double thickness_mm = scene.excerpt.part.thickness_mm;
@@ -279,10 +280,10 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
-/// Adds hits to a beam that describe the curvature of the entrance surface.
+/// Adds hits that describe the curvature of the entrance surface to a beam.
 void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
-  // The axes of the frame of a facet's form are horizontal and downward in the part frame, not in the frame of the
-  // excerpt.
+  // The frame of a facet's form has a horizontal and a downward axis. These directions refer to the part frame, not to
+  // the frame of the excerpt.
   for (TexturedHit& hit : beam.hits) {
     if (hit.path_per_height == 0.0) continue;
     const Vec3 normal = scene.plane.frame_from_part.transpose() * hit.plane.normal;

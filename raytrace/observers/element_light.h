@@ -71,18 +71,18 @@ class ElementLight {
   /// in this plane.
   const geometry::TouchingPlane& beam_plane() const { return beam_plane_; }
 
-  /// Returns the portions of all elements, for light of one wavelength from one direction. Portions without a tangent
-  /// plane have the fraction 0.
+  /// Returns the portions of all elements, for light of one wavelength from one direction. Elements without a tangent
+  /// plane get no light (fraction 0).
   std::vector<ElementPortion> portions(const Vec3& to_source, double index) const;
 
-  /// Returns an element with its surroundings. Returns null if the tangent plane cannot replace the surface: there is
-  /// no such plane, the element reaches it, the polynomial cannot be fitted, or the curvature changes the illuminance
-  /// too much.
+  /// Returns an element with its surroundings. Returns null if the tangent plane cannot replace the surface. This is
+  /// the case if there is no tangent plane, if the element extends up to it, if no polynomial can be fitted to the
+  /// surface, or if the curvature changes the illuminance too much.
   std::unique_ptr<const ElementScene> scene(std::size_t element, const Vec3& to_source, double index) const;
 
  private:
-  /// Half-planes that bound convex regions of a tangent plane, from the outline of the part and from the neighbouring
-  /// elements.
+  /// Half-planes that bound convex regions of a tangent plane. They result from the outline of the part and from the
+  /// neighbouring elements.
   struct Bounds;
   std::optional<TangentPlane> plane_of(std::size_t element, const Vec3& to_source, double index) const;
   /// \param tangent_points tangent points, in plan, of the neighbouring elements; nullopt for elements without a
@@ -104,10 +104,10 @@ class ElementLight {
 Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, const Stokes& stokes);
 
 /// Traces the light of one element and passes its returned beams to the observer. A beam belongs to the element if the
-/// first facet that it met is a facet of this element. A beam that first met something other than an element belongs to
-/// the element if it entered through the portion of the element. Light that the outer side of the surface reflects is
-/// not included. The beams contain the curvature of the surface as hits with a form. Powers are fractions of the light
-/// that is incident on the excerpt, see ElementScene::power_factor.
+/// first facet that it met is a facet of this element. If the beam first met something other than an element, it
+/// belongs to the element if it entered through ElementScene::portion_mm. Light that the outer side of the surface
+/// reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are fractions
+/// of the light that is incident on the excerpt, see ElementScene::power_factor.
 /// \param optics shells must not deflect light
 /// \param policy policy for the beams; BeamPolicy::ends_at_sides is ignored and always true
 BeamResult trace_element(const ElementScene& scene, const Optics& optics, const Illumination& illumination,

@@ -25,9 +25,9 @@ struct FormedPolicy {
   std::size_t max_polygons = 20'000;
 };
 
-/// Returns the field including the phases of the surfaces with a form that the light has met (docs/theory/form.md). The
-/// forms are those of FieldHit::form. Every polygon is divided into convex polygons, each with a plane wave. Powers and
-/// amplitudes are unchanged. FieldPolygon::hits of the new polygons is empty.
+/// Returns the field with the additional phases of all forms (FieldHit::form) that the light has met
+/// (docs/theory/form.md). Every polygon is divided into convex polygons, each with a plane wave. Powers and amplitudes
+/// are unchanged. FieldPolygon::hits of the new polygons is empty.
 /// \throw BudgetError if more than FormedPolicy::max_polygons polygons are needed
 CoherentGroup formed(const CoherentGroup& group, const FormedPolicy& policy);
 

@@ -86,8 +86,8 @@ class ReflectedSum {
   double sum_ = 0.0;
 };
 
-/// Returns the part of the outline, in plan, in which the incident beam meets the surface. Only the corners of the beam
-/// are projected onto the surface. The edges between them are approximated by straight lines in plan.
+/// Returns the portion of the outline, in plan, in which the incident beam meets the surface. Only the corners of the
+/// beam are projected onto the surface. The edges between them are approximated by straight lines in plan.
 Polygon lit_outline(const EntranceSurface& surface, const Polygon& outline, const geometry::TouchingPlane& beam_plane,
                     const Vec3& to_source) {
   Polygon shifted;

@@ -11,9 +11,9 @@
 
 namespace retrace::raytrace {
 
-/// Returns the power per steradian that a surface reflects towards a receiver, as a fraction of the incident power. It
-/// is averaged over the discs of source and receiver, and computed by geometrical optics. Reflected light that would
-/// meet the surface again is not followed; it counts as if it had a free path.
+/// Returns the power per steradian that a surface reflects towards a receiver, as a fraction of the incident power. The
+/// value is averaged over the discs of source and receiver, and computed by geometrical optics. Reflected light that
+/// would meet the surface again is counted as if nothing were in its way.
 /// \param outline convex outline of the part
 /// \param beam_plane plane that touches the surface from above. The incident beam covers the outline in this plane.
 /// \param reflectance function that returns the reflected fraction of the power for a unit normal of the surface (part

@@ -22,7 +22,8 @@ struct OutgoingRay {
   double path_mm = 0.0;  ///< optical path up to this point, with the same origin as ReturnedBeam::phase_mm
 };
 
-/// Follows rays through the curved surface, along the reflections of a beam. Coordinates are those of ReturnedBeam.
+/// Traces rays through the curved surface, with the same reflections as a given beam. Coordinates are those of
+/// ReturnedBeam.
 class RayFollower {
  public:
   RayFollower(const geometry::EntranceSurface& surface, const ElementScene& scene, const ReturnedBeam& beam,
@@ -37,7 +38,7 @@ class RayFollower {
     const Vec3 inside = bent(down, in->normal, 1.0 / beam_.index);
     const Vec3 unfolded = path_.matrix * inside;
     const Vec3 start = path_.matrix * in->at + path_.shift_mm;
-    // Start of the search: the intersection with the tangent plane.
+    // The search starts at the intersection with the tangent plane.
     const double about_mm = -start.z() / unfolded.z();
     const std::optional<Met> out = met(start + about_mm * unfolded, unfolded);
     if (!out) return std::nullopt;

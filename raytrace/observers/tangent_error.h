@@ -31,8 +31,8 @@ class TangentError {
  private:
   std::size_t rays_ = 0;
   double power_ = 0.0;
-  double squared_path_mm2_ = 0.0;  ///< sum of squares times power
-  double squared_angle_ = 0.0;     ///< sum of squares times power
+  double squared_path_mm2_ = 0.0;  ///< sum of squared path differences times power
+  double squared_angle_ = 0.0;     ///< sum of squared angles times power
   double max_angle_rad_ = 0.0;
 };
 

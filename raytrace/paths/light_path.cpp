@@ -87,7 +87,8 @@ class Follower {
     return std::move(path_);
   }
 
-  /// Returns the side of the part that the light meets first if nothing else is in its way, and the distance to it.
+  /// Returns the nearest side of the part in the direction of the light, and the distance to it. Facets and the
+  /// entrance face are not considered.
   std::pair<const LightSetup::Side*, double> nearest_side() const {
     double limit = std::numeric_limits<double>::infinity();
     const LightSetup::Side* side = nullptr;

@@ -48,7 +48,7 @@ bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std
   const bool meets = setup_.infinite() ? arrive_at_sheet(state) : arrive_at_body(state);
   if (meets) follow_pending();
   if (meets || entry == ShellEntry::outside) return meets;
-  // The shells have taken a part of the light. The rest passes beside the part.
+  // The light has crossed the shells, which may have reduced its power. The remaining light passes beside the part.
   report_exit(Account::transmitted, state, state.direction, state.light);
   finish(state, Account::transmitted);
   return true;
