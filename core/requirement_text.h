@@ -12,9 +12,10 @@ namespace retrace {
 /// \param conjunction word before the last one: "and" or "or"
 std::string in_words(std::span<const std::string> words, std::string_view conjunction);
 
-/// Returns the text for a requirement. It is met if at least one condition of `required` is satisfied or at least one
-/// condition of `excluded` is not satisfied. Examples are "requires --camera or --road", "not allowed together with
-/// --lamp" and "requires --engine exact if --cutoff is given". At least one of the lists is not empty.
+/// Returns the text that describes a requirement, such as "requires --camera or --road", "not allowed together with
+/// --lamp" or "requires --engine exact if --cutoff is given". The requirement is met if at least one condition of
+/// `required` is satisfied or at least one condition of `excluded` is not satisfied.
+/// \pre at least one of the lists is not empty
 std::string requirement_text(std::span<const std::string> required, std::span<const std::string> excluded);
 
 }  // namespace retrace

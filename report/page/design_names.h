@@ -22,7 +22,8 @@ class DesignNames {
   explicit DesignNames(const ResultFolder& folder);
 
   bool are_several() const { return names_.size() > 1; }
-  /// Returns true if the folder has several different designs, or if the document has several designs, even equal ones.
+  /// Returns true if the folder contains several different designs. Also returns true if the document contains several
+  /// designs, which may be equal.
   bool are_several(const ResultDocument& document) const { return are_several() || labels_of(document) != nullptr; }
   std::size_t count() const { return names_.size(); }
   /// Returns the name of a design.

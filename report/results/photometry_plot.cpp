@@ -38,7 +38,8 @@ ContourPanel panel_of(const studies::CoefficientMap& map, std::string title, dou
   return panel;
 }
 
-/// Marks the test points that have the rotation of a map and lie in the plane of its entrance angles.
+/// Marks the test points that a map contains: their rotation is that of the map, and their direction of light is in the
+/// plane of the map's entrance angles.
 void add_marks(const studies::PhotometryResult& result, const studies::CoefficientMap& map, ContourPanel& panel) {
   constexpr double kSameAngleDeg = 1e-9;
   const auto is_in = [](const std::vector<double>& list, double value) {

@@ -30,8 +30,8 @@ Colour displayed(std::array<double, 3> rgb, double intensity);
 /// \param dye "none", "red", "amber" or the path of a file
 std::string name_with_dye(const design::Design& design, const std::string& dye);
 
-/// Returns a number as text: without decimals if it is at least 100, with one decimal if it is at least 10, and
-/// otherwise as fixed_visible() with two decimals.
+/// Returns a number as text. Numbers of at least 100 have no decimals, and numbers of at least 10 have one decimal.
+/// Smaller numbers are written by fixed_visible() with two decimals.
 std::string rounded_text(double value);
 
 /// Returns a description of the exposure and the tone curve of a picture.
