@@ -16,8 +16,8 @@ struct SolidRequest {
   std::string what = "array";
   /// Thickness of the mould below its deepest point, in mm; > 0 and <= 1e+06. Default: the plate's thickness.
   std::optional<double> block_mm = {};
-  /// Largest distance along z between the triangles of an exact entrance surface and the surface, in mm; >= 1e-06 and
-  /// <= 10. Default: 0.001.
+  /// Maximum distance along z between an exact entrance surface and the triangles that approximate it, in mm; >= 1e-06
+  /// and <= 10. Default: 0.001.
   std::optional<double> surface_error_mm = {};
 };
 

@@ -24,8 +24,8 @@ constexpr Row kSolidRows[] = {{"what",
                                kNeedMould},
                               {"surface_error_mm",
                                Number{{.low = 1e-6, .high = 10.0}},
-                               "largest distance along z between the triangles of an exact entrance surface and the "
-                               "surface",
+                               "maximum distance along z between an exact entrance surface and the triangles that "
+                               "approximate it",
                                access<&SolidRequest::surface_error_mm>,
                                {.value = "E", .otherwise = "0.001"}}};
 
