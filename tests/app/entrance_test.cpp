@@ -89,8 +89,8 @@ TEST_F(Entrance, FormulaOfTheRadiusIsItsConic) {
       EXPECT_NEAR(formula["points"][k]["ledger"][account].get<double>(), power.get<double>(), 1e-9) << account;
 }
 
-// A surface given by `kind` and a turned part with the same surface give the same results, because the rays use the
-// same random numbers.
+// A surface that is given by `kind` must give the same results as a turned part with this surface, because the rays use
+// the same random numbers.
 TEST_F(Entrance, KindIsTheTurnedPartOfTheSameSurface) {
   const std::string prisms =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
@@ -365,7 +365,7 @@ TEST_F(CurvedPhotometry, StaysUndeterminedWithoutTangentPlanes) {
   EXPECT_EQ(plain["verdict"], "undetermined");
   EXPECT_EQ(plain["engine"], "embree");
   EXPECT_FALSE(plain.contains("entrance_model"));
-  // A strongly curved surface deviates too much from its tangent planes.
+  // A strongly curved surface deviates too much from its tangent planes. Photometry then uses rays.
   folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = -30\n", {}, 11.0));
   const Json strong = measure(cubes(0.0), few, 1);
   EXPECT_EQ(strong["verdict"], "undetermined");

@@ -93,7 +93,7 @@ TEST_F(OutlineCommand, PrismsComeBackAsTheDesign) {
   EXPECT_NEAR(rre_of("smooth.toml"), rre_of("design.toml"), 1e-4);
 }
 
-// Without the design, the machined part has the outline of the job.
+// If the design file is missing, the machined part must have the outline that the job contains.
 TEST_F(OutlineCommand, TheJobContainsTheOutline) {
   make(prisms(table("circle_mm = [0, 0, 1.2]\nholes_mm = [[0.1, 0.2, 0.3]]\n"), "partial_elements = \"omit\"\n"),
        kTwoStep);
@@ -106,7 +106,7 @@ TEST_F(OutlineCommand, TheJobContainsTheOutline) {
   EXPECT_NEAR(machined["entrance_area_mm2"].get<double>(), design["entrance_area_mm2"].get<double>(), 1e-9);
 }
 
-// A program for the whole rectangle cuts the land outside of the outline. `retrace verify` finds this error.
+// An NC program for the whole rectangle also cuts outside of the outline. `retrace verify` must find this error.
 TEST_F(OutlineCommand, CutsOutsideOfTheOutlineAreFound) {
   make(prisms("", "x_length_mm = 3\ny_length_mm = 2.4\n"), kTwoStep);
   const std::string whole = folder_.read("nc/program.ngc");
@@ -174,7 +174,7 @@ TEST_F(OutlineCommand, ReachableCubeCornersAreInsideTheOutline) {
   EXPECT_NEAR(reached["entrance_area_mm2"].get<double>(), design["entrance_area_mm2"].get<double>(), 1e-9);
 }
 
-// A mask selects elements of the bounding box. Of these, only the elements inside the outline remain.
+// A mask selects elements of the bounding box. Of the selected elements, only those inside the outline must remain.
 TEST_F(OutlineCommand, MasksSelectElementsInsideTheOutline) {
   std::string picture = "P2\n15 9\n255\n";
   for (int k = 0; k < 15 * 9; ++k) picture += k % 15 < 8 ? "0\n" : "255\n";
@@ -209,7 +209,7 @@ TEST_F(OutlineCommand, FaultyOutlinesOfJobsAreRefused) {
   EXPECT_EQ(refusal("tolerance_mm = 0.005", "tolerance_mm = 1e-6"), "outline.tolerance_mm");
 }
 
-// A rectangular outline gives the same results as x_length_mm and y_length_mm.
+// A rectangular outline must give the same results as a part with x_length_mm and y_length_mm.
 TEST_F(OutlineCommand, ARectangleGivesTheNumbersOfTheRectangle) {
   const std::string lengths = "x_length_mm = 3\ny_length_mm = 2\n";
   const std::string zones =

@@ -96,7 +96,7 @@ TEST_F(Shell, LensIsTracedByRays) {
   }
 }
 
-// The design in results contains the shells, and can be read again.
+// Result files contain the design with the keys of its shells, including their defaults.
 TEST_F(Shell, DesignsKeepTheirShells) {
   const std::string tilted =
       "[[shell]]\nthickness_mm = 2\ngap_mm = 4\nmaterial = \"PC\"\ntilt_deg = [3, -4]\n"

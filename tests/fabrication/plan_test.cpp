@@ -320,8 +320,8 @@ TEST(Time, OfAMoveFromRestToRest) {
   EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, {2.0, 1.0}), 0.0);
 }
 
-/// If a linear axis moves, the length of a move is the path length of the linear axes. Otherwise, it is computed from
-/// the two angles as Cartesian coordinates, even if only C rotates.
+/// If a linear axis moves, the length of a move is the path length of the linear axes. Otherwise, the length is
+/// computed as if the two angles were Cartesian coordinates, even if only C rotates.
 TEST(Time, LengthOfAMove) {
   EXPECT_DOUBLE_EQ((AxisTravel{Vec3(3.0, 0.0, -4.0), 7.0, 30.0}).length(), 5.0);
   EXPECT_DOUBLE_EQ((AxisTravel{Vec3::Zero(), -3.0, 4.0}).length(), 5.0);

@@ -31,7 +31,7 @@ struct NamedBoundary {
   Part part;
 };
 
-/// Returns parts with steps at their borders, with cut elements and with oblique sides, and a plate.
+/// Returns a plate, and parts with steps at their borders, with cut elements or with oblique sides.
 std::vector<NamedBoundary> parts() {
   std::vector<NamedBoundary> all;
   all.push_back({"bricks", build_welded_part(finite(RtpElement{0.7, 0.5}, Arrangement::offset, 3.1, 2.3, 1.4))});

@@ -37,7 +37,7 @@ std::string arc(const std::string& values) {
 std::string circle_at_10_5(const std::string& layer = "CUT") {
   return "0\nCIRCLE\n8\n" + layer + "\n10\n10\n20\n5\n40\n2\n";
 }
-/// A stadium whose two lines and two arcs are not in order; each line may run in either direction.
+/// Returns a stadium whose two lines and two arcs are not in order. Each line may run in either direction.
 std::string stadium() {
   return line("0,0", "20,0") + line("0,10", "20,10") + arc("20 5 5 270 90") + arc("0 5 5 90 270");
 }

@@ -71,7 +71,7 @@ TEST(EntranceShape, BiconicWithEqualRadiiIsASphere) {
                 1e-13);
 }
 
-// In each of its two principal sections, a biconic surface has the conic of this section.
+// The sections of a biconic surface along x and y must be the conics that are given for these two axes.
 TEST(EntranceShape, BiconicHasTheConicsOfItsSections) {
   const EntranceSurface biconic = surface_of(BiconicEntrance{{40.0, -15.0}, {-0.4, 0.2}});
   const EntranceSurface along_x = surface_of(SphereEntrance{40.0, -0.4});
@@ -132,8 +132,8 @@ TEST(EntranceShape, RotatedSphereIsAShiftedSphere) {
       }
 }
 
-// The slope of an inclined surface is the derivative of its height. The surface is rotated as a rigid body: if a point
-// of the surface is rotated back, it has the height of the formula.
+// The slope of an inclined surface must be the derivative of its height. The surface is rotated as a rigid body: a
+// point of the rotated surface, rotated back, must have the height that the formula gives.
 TEST(EntranceShape, InclinedFormulaIsRotatedRigidly) {
   const EntranceShape shape = formula("0.1 * sin(x / 3) * cos(y / 4) - (x^2 + 2 * y^2) / 300");
   const Sag upright = height_of(shape);
@@ -147,7 +147,8 @@ TEST(EntranceShape, InclinedFormulaIsRotatedRigidly) {
   }
 }
 
-// The reference axis, the axis of the face and z are in one plane. The angles between them are the given ones.
+// The reference axis, the axis of the face and the z axis must be in one plane, and the angles between them must be the
+// given ones.
 TEST(EntranceShape, ReferenceAxisIsAtTheIncidence) {
   const EntranceInclination inclination{50.0, 120.0, 30.0};
   const Vec3 axis = rotation_of(inclination).col(2);

@@ -334,7 +334,7 @@ class Designs(unittest.TestCase):
         self.assertTrue(made.is_manifold)
         entrance = vertices[faces[labels == rt.FaceKind.ENTRANCE]]
         # The lenslets are 0.0225 mm high. The plane between them is 3.01126 mm above the back.
-        # Blends are lower by 1 um.
+        # Blends are 1 um lower than this plane.
         self.assertAlmostEqual(entrance[..., 2].min(), 3.01126, delta=0.001)
         self.assertAlmostEqual(entrance[..., 2].max(), 3.01126 + 0.0225, delta=0.002)
         fine = rt.mesh(design, surface_error_mm=0.0005)

@@ -100,7 +100,7 @@ struct Pair {
   Seen shared;
 };
 
-/// Returns the results of all questions. They are computed once, because the computation takes long.
+/// Returns a pair of results for each question. They are computed only one time, because the computation takes long.
 const std::vector<Pair>& pairs() {
   static const std::vector<Pair> all = [] {
     Optics optics = pmma();

@@ -150,8 +150,8 @@ TEST(Shells, OfIndexOneChangeNothing) {
               1e-12);
 }
 
-// Tests entrance faces that scatter light. Shells of index 1 change nothing. Behind plates, the ledger contains all
-// light.
+// Tests entrance faces that scatter light. Shells of index 1 must not change the result. Behind an absorbing plate, the
+// accounts of the ledger must still add up to 1.
 TEST(Shells, ContaminatedEntranceFacesKeepAllLight) {
   Optics bare = pmma();
   bare.entrance.haze = {0.2, 0.1};

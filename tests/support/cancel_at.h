@@ -4,7 +4,7 @@
 
 namespace retrace::testing {
 
-/// Progress that cancels the computation when it reaches a fraction.
+/// Progress object that cancels the computation as soon as a given fraction is complete.
 class CancelAt : public Progress {
  public:
   explicit CancelAt(double fraction) : fraction_(fraction) {}

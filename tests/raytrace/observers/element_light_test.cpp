@@ -199,8 +199,8 @@ PartSpec small_honeycomb(double error_arcmin) {
 }
 
 // A sphere with a very large radius and an exactly plane surface must give the results of the plane entrance face. With
-// an entrance surface, light that first meets a side of the part does not interfere with other light. The part is thin,
-// so that there is little of this light.
+// an entrance surface, light that first meets a side of the part is added without interference. The part is thin, so
+// that little light takes this path and the difference stays small.
 TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
   const Part part = build_part(small_honeycomb(1.5));
   const Vec2 middle = bounding_box(part.outline).centre();
@@ -258,7 +258,8 @@ TEST(ElementLight, InclinedPlaneSteersNothing) {
   }
 }
 
-// The model contains the terms of second order in the curvature. The error of the direction is of third order.
+// The model contains the terms of second order in the curvature, so that the error of the direction is of third order.
+// Twice the curvature must give about eight times the error.
 TEST(ElementLight, ErrorsAreCubicInTheCurvature) {
   const Part part = build_part(single(HexagonalCube{3.0}, 2.0));
   const Vec2 middle = bounding_box(part.outline).centre();

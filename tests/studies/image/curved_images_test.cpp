@@ -207,7 +207,7 @@ TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
   for (const double b : batches) spread += std::pow(b - forwards, 2.0);
   const double error = std::hypot(std::sqrt(variance), std::sqrt(spread / (kBatches - 1.0) / kBatches));
   EXPECT_GT(forwards, 0.0);
-  // Terms of higher order in the radii of the discs are neglected. Their fraction is at most 1e-2.
+  // Terms of higher order in the radii of the discs are neglected. Their relative contribution is at most 1e-2.
   EXPECT_NEAR(intensity, forwards, student_bound(1) * error + 0.01 * forwards);
   EXPECT_LT(error, 0.04 * forwards);
 }
