@@ -140,14 +140,15 @@ struct FacetPlanesFile {
 
 /// Description of an outline: the keys of the table [outline].
 struct OutlineKeys {
-  /// Keys of the table that are given, with their values, in the order of the file format. The keys of margin and
-  /// tolerance are not included, because these values are members of geometry::PlanRegion.
+  /// Keys that are set in the table, and their values, in the order of the file format. The margin and the tolerance
+  /// are not included, because geometry::PlanRegion stores them.
   std::vector<std::pair<std::string, schema::Value>> values;
   /// Path of the DXF file, relative to the working directory; empty if the outline is not in a file.
   std::filesystem::path dxf;
 };
 
-/// Returns the keys with an absolute path of the DXF file. Designs that are written to another folder need such a path.
+/// Returns the keys after making the path of the DXF file absolute. A design that is written to another folder needs an
+/// absolute path.
 OutlineKeys with_absolute_path(OutlineKeys outline);
 
 /// Array of elements, the plate in front of them, and differences between individual elements.
@@ -155,8 +156,8 @@ struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
   std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
-  /// Keys that determine `part.array.outline`. If there are none, a document of the design contains the borders of the
-  /// outline with all arcs instead.
+  /// Keys that determine `part.array.outline`. If there are no such keys, documents of the design describe the outline
+  /// by the sides and arcs of its borders.
   OutlineKeys outline = {};
 };
 
@@ -223,7 +224,7 @@ struct EntranceForm {
   double rotation_deg = 0.0;  ///< rotation about the axis of the face, before the face is inclined
   geometry::EntranceInclination inclination;
   /// True if the design specifies the pin angle `pin_angle_deg`. If false, the pin angle is the angle of refraction of
-  /// light along the reference axis.
+  /// light that is incident along the reference axis.
   bool has_pin_angle = false;
 };
 
@@ -408,7 +409,8 @@ struct Design {
   /// Returns the position of the key that makes the facets differ from smooth planes. This is the key of the texture
   /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
-  /// Returns the inclination of the entrance face, or null if both the axis of the face and the reference axis are +z.
+  /// Returns the inclination of the entrance face. Returns null if the axis of the face and the reference axis are both
+  /// +z.
   const geometry::EntranceInclination* inclination() const;
   /// Returns the reference axis of photometry as a unit vector in the part frame, towards the light. It is the
   /// direction H = V = 0, which is the axis of the vehicle (UN R3, R150). The reference axis is +z unless the entrance
@@ -416,8 +418,8 @@ struct Design {
   geometry::Vec3 reference_axis() const;
   /// Returns the power of the incident beam, divided by its illuminance and by the area of the part in plan. The
   /// illuminance is measured perpendicular to the beam. The result is the cosine of the angle of incidence unless the
-  /// entrance face is inclined. The beam of an inclined face covers the outline in a plane perpendicular to the axis of
-  /// the face.
+  /// entrance face is inclined. For an inclined face, the cross section of the beam is the outline, projected along z
+  /// onto a plane perpendicular to the axis of the face.
   /// \param to_source unit vector in the part frame
   double incident_fraction(const geometry::Vec3& to_source) const;
   /// Returns the name of the key that determines the curved entrance face.

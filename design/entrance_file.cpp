@@ -18,7 +18,8 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Returns points on the edges of the outline, including its corners. Coordinates are those of the file with the face.
+/// Returns points on the edges of the outline, including its corners. The coordinates are those of the file that
+/// contains the entrance face.
 std::vector<Vec2> border_points(const geometry::Polygon& outline, const Vec2& origin_mm) {
   constexpr int kPointsOfEdge = 64;
   std::vector<Vec2> points;

@@ -42,7 +42,7 @@ ShellSurface surface_of(const Vec3& vertex_mm, const Vec3& normal, const std::op
 }
 
 /// Returns both surfaces of a shell.
-/// \param base_mm height at the middle of the next surface towards the part
+/// \param base_mm height of the middle of the next surface towards the part
 Shell surfaces_of(const OuterShell& given, double base_mm) {
   const Eigen::Matrix3d tilt = rotation(given.tilt_deg);
   const Vec3 outer_normal = tilt * Vec3::UnitZ();

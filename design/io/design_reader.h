@@ -29,7 +29,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 /// \throw InputError under the same conditions as read_design()
 Design with(const Design& design, std::span<const std::string> overrides);
 
-/// Sets the position in the file that messages about a key of the design report.
+/// Sets the file position of a key of the design. Messages about the key report this position.
 void set_where(Design& design, const std::string& key, InputLocation place);
 
 /// File whose name is the value of a key of a design.

@@ -302,7 +302,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
     document.fail(
         key,
         "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
-  // find_offset() checks a substrate below the entrance surface, because the surface must be read first.
+  // A substrate below the entrance surface is checked later, by find_offset(), after the surface has been read.
   if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape)) return;
   try {
     geometry::check_substrate(part);

@@ -117,7 +117,7 @@ Document document_of_zone(const Document& document, std::size_t zone, const std:
   }
 }
 
-/// Returns the x coordinate for which a given fraction of the part's area is to the left.
+/// Returns the x coordinate that has a given fraction of the part's area to its left.
 double end_of_stripe(const geometry::ZonedSpec& spec, double fraction) {
   const geometry::PlanRegion* const outline = spec.cutting_outline();
   if (outline == nullptr) return fraction * spec.size_mm.x();
@@ -272,7 +272,7 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   }
 }
 
-/// Returns a specification of a zone's elements from which the outline and the margin of the whole part are removed.
+/// Returns the specification of a zone's elements without the outline and the margin, which belong to the whole part.
 geometry::PartSpec without_outline(geometry::PartSpec elements) {
   elements.array.outline.reset();
   elements.array.x_offset_mm = elements.array.y_offset_mm = 0.0;

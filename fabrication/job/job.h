@@ -190,8 +190,8 @@ struct CutElement {
 /// Converts the outline of a plan to the form in which a job stores it.
 JobOutline job_outline(const geometry::PlanRegion& plan);
 
-/// Returns the plan of the job's part. The width of its margin is the offset of the array.
-/// \param fault set if the outline is not allowed; the returned plan must then not be used
+/// Returns the plan of the job's part. The margin of the part is as wide as the offset of the array.
+/// \param fault set if the outline is invalid; the returned plan must then not be used
 /// \pre the job has an outline
 geometry::PlanRegion plan_of_outline(const Job& job, std::optional<geometry::OutlineFault>& fault);
 

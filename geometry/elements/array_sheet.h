@@ -52,9 +52,9 @@ struct ArraySheet {
   Rectangle coverage_mm;          ///< area of the sheet that covers the part
   /// area of the sheet that elements fill; the rest is flat land (surface without elements)
   Rectangle block_mm;
-  /// Height of the substrate that becomes z = 0 of the part. It is the height of the highest point of the substrate.
-  /// For a substrate below an entrance surface, it is the height of the lowest point, so that the entrance surface is
-  /// above z = 0 everywhere.
+  /// Height, in coordinates of the substrate, that becomes z = 0 of the part. Usually, it is the height of the highest
+  /// point of the substrate. For a substrate below an entrance surface, it is the height of the lowest point instead,
+  /// so that the entrance surface is above z = 0 everywhere.
   double zero_mm = 0.0;
   /// cells that extend beyond a border of the sheet by at most this length count as inside
   double sliver_mm = 0.0;

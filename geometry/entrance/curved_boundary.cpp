@@ -40,7 +40,7 @@ class ChordError {
   ChordError(const EntranceSurface& surface, double spacing_mm) : surface_(surface), spacing_mm_(spacing_mm) {}
 
   /// Returns the maximum distance along z between a triangle and the surface, at points of a grid within the triangle.
-  /// Stops and returns a distance as soon as it exceeds `enough_mm`.
+  /// If a distance exceeds `enough_mm`, returns it without checking further points.
   double of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, double enough_mm) const {
     const double longest_mm = std::max({(b - a).head<2>().norm(), (c - b).head<2>().norm(), (a - c).head<2>().norm()});
     const int steps = std::max(3, static_cast<int>(std::ceil(longest_mm / spacing_mm_)));
@@ -186,7 +186,8 @@ class BoundaryBuilder {
     return rims;
   }
 
-  /// Returns a polygon to which all vertices on its sides are added. Sets the heights of added vertices that have none.
+  /// Returns a copy of a polygon, with all plan vertices on its sides inserted. If the height of an inserted vertex is
+  /// not known yet, it is set.
   Ring with_vertices_on_sides(const Ring& corners, const EntranceHeights& height) {
     Ring ring;
     for (std::size_t k = 0; k < corners.size(); ++k) {

@@ -15,7 +15,7 @@ namespace retrace::geometry {
 struct CurvedBoundary {
   BoundaryMesh mesh;
   /// Maximum distance along z between the triangles of the entrance face and the exact surface, measured at points
-  /// within the triangles. It is 0 if the entrance face is a mesh, whose own triangles are used.
+  /// within the triangles. It is 0 if the entrance face is a mesh, because the triangles of this mesh are used.
   double entrance_error_mm = 0.0;
 };
 

@@ -56,9 +56,9 @@ FormulaEntrance parse_entrance_formula(const std::string& text, const InputLocat
 Sag height_of(const EntranceShape& shape);
 
 /// Orientation of an entrance face relative to the elements of the part, whose axes are parallel to z. The axis of the
-/// face is the z axis of the face's own frame. This axis, z and the reference axis of the part are in one vertical
-/// plane. The axis of the face is inclined from z in the direction opposite to `azimuth_deg`. Light along the reference
-/// axis then comes from the azimuth `azimuth_deg`.
+/// face is the z axis of the face's own frame. One vertical plane contains the axis of the face and the reference axis
+/// of the part. The axis of the face is inclined from z in the direction opposite to `azimuth_deg`. Light along the
+/// reference axis then comes from the azimuth `azimuth_deg`.
 struct EntranceInclination {
   double incidence_deg = 0.0;  ///< angle between the reference axis and the axis of the face, 0..60
   double azimuth_deg = 0.0;    ///< azimuth towards which the reference axis leans away from the axis of the face

@@ -203,7 +203,7 @@ Vec3 EntranceSurface::normal_of(const Vec2& slope) const {
 std::optional<EntranceSurface::Crossing> EntranceSurface::crossing_near(const Vec2& across_mm, double z_mm) const {
   constexpr int kMaxSteps = 40;
   constexpr double kSmallStep = 1e-12;  // relative to the distance from the origin
-  // Steps that no longer decrease are rounding errors of the height if they are smaller than this value.
+  // Steps below this length that no longer decrease are regarded as rounding errors of the height.
   constexpr double kRoundingMm = 1e-6;
   double previous_mm = INFINITY;
   for (int k = 0; k < kMaxSteps; ++k) {
@@ -270,9 +270,9 @@ bool EntranceSurface::faces_up_at(const Vec2& position_mm) const {
 
 namespace {
 
-/// Checks a few points of the surface between those above `p` and `q`. Returns the plan position of the first point at
-/// which the surface is vertical or folds, or nothing. If a surface folds between two points, its normal does not point
-/// upwards at some point between them.
+/// Checks a few points of the surface between the point above `p` and the point above `q`. Returns the plan position of
+/// the first point at which the surface is vertical or folds, or nothing if there is no such point. If a surface folds
+/// between two points, its normal does not point upwards at some point between them.
 std::optional<Vec2> fold_between(const EntranceSurface& surface, const Vec2& p, const Vec2& q) {
   constexpr int kPointsBetween = 8;
   const std::optional<Vec2> a = surface.surface_position(p);

@@ -108,8 +108,8 @@ struct EntranceRange {
   /// surfaces it is empty, and the horizontal plane at `highest_mm` is used instead.
   std::optional<TouchingPlane> inclined_plane = {};
 
-  /// Returns the height at a point of the plane that touches the surface from above. The incident beam crosses this
-  /// plane inside the outline of the part.
+  /// Returns the height, at a given point, of the plane that touches the surface from above. The incident beam crosses
+  /// this plane inside the outline of the part.
   double beam_height_mm(const Vec2& point_mm) const {
     return inclined_plane ? inclined_plane->at(point_mm) : highest_mm;
   }

@@ -139,8 +139,7 @@ class DxfReader {
     std::vector<double> bulges;
   };
 
-  /// Returns true if the entity whose groups are next in the text is on the selected layer. Does not read on in the
-  /// text.
+  /// Returns true if the next entity in the text is on the selected layer. Leaves the reading position unchanged.
   bool is_next_selected() {
     if (selection_.layer.empty()) return true;
     const std::string_view remainder = remainder_;

@@ -67,8 +67,8 @@ class Triangulation {
     }
   }
 
-  /// Returns the position in the ring of a corner that is visible from the rightmost corner of a hole. A ray from the
-  /// rightmost corner towards +x is used to find the visible corner.
+  /// Returns the index, in the ring, of a corner that is visible from the rightmost corner of a hole. To find it, a ray
+  /// is cast from the rightmost corner towards +x.
   std::size_t position_visible_from(std::uint32_t hole) const {
     const Vec2& m = vertices_[hole];
     double nearest = INFINITY;

@@ -37,8 +37,8 @@ struct ArcPolygon {
   double radius = 1.0;
 };
 
-/// Returns the distance of the inner corners from the centre of the arc for which the polygon and the sector have equal
-/// areas.
+/// Returns the distance between the inner corners and the centre of the arc. It is chosen so that the polygon and the
+/// sector have equal areas.
 double radius_of_inner_corners(double sweep_rad, int sides) {
   const double step_rad = sweep_rad / sides;
   const double ratio = sweep_rad / std::sin(step_rad);  // about `sides`

@@ -57,7 +57,7 @@ std::vector<Polygon> clip(const Polygon& polygon, const ConvexRegion& region, do
 /// Returns the ends of the portion of a segment that is inside a convex polygon, or nothing if the segment is outside.
 std::optional<std::array<Vec2, 2>> clip_segment(const Vec2& from, const Vec2& to, const Polygon& polygon);
 
-/// Returns the coordinate at which the area of a plan within a rectangle is divided in a given ratio.
+/// Returns the coordinate that divides the area of a plan within a rectangle in a given ratio.
 /// \param room rectangle; only the area of the plan inside it counts
 /// \param axis 0 to divide along x, 1 to divide along y
 /// \param fraction fraction of this area for which the coordinate is smaller than the returned one; 0 to 1

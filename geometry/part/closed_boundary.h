@@ -22,8 +22,8 @@ struct BoundaryMesh {
 /// Adds the triangles that join the edges of a closed polygon of vertices to its centroid.
 void add_fan(BoundaryMesh& mesh, const std::vector<std::uint32_t>& ring, FacetRole role);
 
-/// Returns the directed edges of triangles for which no triangle has the same edge in the opposite direction. They are
-/// in the order of the triangles.
+/// Returns the directed edges of the triangles that have no opposite edge in any triangle, in the order of the
+/// triangles.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> open_edges(const BoundaryMesh& mesh);
 
 /// Returns the back surface and the border walls of a finite part. The returned mesh is open, because the sides and the

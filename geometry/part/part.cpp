@@ -59,8 +59,8 @@ bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
          spec.scratches.empty();
 }
 
-/// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of the
-/// vertices, because border walls end at z = 0 and therefore have vertices there. Sides of the plate are ignored.
+/// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of those
+/// of all vertices, because the border walls have vertices at z = 0. Sides of the plate are ignored.
 /// \param has_open_sides true if some facets of the patch are sides of the plate, which occurs at notches and holes
 std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate, bool has_open_sides) {
   std::array<double, 2> range{INFINITY, -INFINITY};

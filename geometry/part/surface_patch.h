@@ -63,7 +63,7 @@ struct SurfacePatch {
   std::vector<std::vector<std::uint32_t>> border_rim;
 };
 
-/// Borders of a part with an outline, relative to the patch.
+/// Borders of a part with an outline, in coordinates of the patch.
 struct PatchRim {
   std::vector<std::vector<Vec2>> borders;  ///< closed polygons; walls on their sides are border walls
   /// Convex hull of a part with notches or holes; empty for other parts. Sides of the part that are not on the hull

@@ -36,8 +36,8 @@ class RayAccount(enum.IntEnum):
 
 
 class RaysResult(Result):
-    """Power of the rays by ledger account. Rays that left are in the file `out`, if it was
-    given."""
+    """Power of the rays by ledger account. If the argument `out` was given, this file contains
+    the rays that left the part."""
 
     _told = ("rays", "power", "power_unit")
 
@@ -47,7 +47,8 @@ class RaysResult(Result):
 
 
 class TracedRays(RaysResult):
-    """All rays that left. Arrays have one row per ray, in the order of the incident rays."""
+    """All rays that left the part. Arrays have one row per ray, in the order of the incident
+    rays."""
 
     power_out: Array  #: (m,) power of each ray
     origins: Array  #: (m, 3) points where rays left, in mm in the part frame

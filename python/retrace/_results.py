@@ -57,7 +57,7 @@ def former_names(kind: str) -> Mapping[str, str]:
     """Returns a dict from the former paths of renamed keys to their current names.
 
     kind: kind of the documents; "" for designs. In a path such as "regions[].active_share", only
-    the last name is a former name. The names before it are current names."""
+    the last name ("active_share") is a former one. All names before it are current."""
     names = {}
     for of, former, current in _core.former_names():
         if of == kind and "=" not in current:

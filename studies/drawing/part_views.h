@@ -44,7 +44,7 @@ struct SectionView {
   double x_from_mm = 0.0;
   double x_to_mm = 0.0;
   std::vector<geometry::Vec2> outline_mm;  ///< (x, z), closed; see `entrance_corners`
-  std::size_t entrance_corners = 2;        ///< number of last corners, on the entrance face from right to left
+  std::size_t entrance_corners = 2;        ///< number of corners on the entrance face; the last ones of `outline_mm`
 
   /// Returns the corners on the entrance face, from right to left.
   std::vector<geometry::Vec2> entrance_mm() const;

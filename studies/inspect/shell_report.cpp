@@ -29,8 +29,8 @@ double transmittance_of(const design::OpticalModel& model, std::size_t k) {
   return mean;
 }
 
-/// Returns true if the shells have angles about x but none about y. The angles are then visible only in the section
-/// along y.
+/// Returns true if shells or their surfaces are rotated about x, but none about y. These rotations are visible only in
+/// the section along y.
 bool is_turned_about_x(const design::Design& design) {
   const auto any = [&](std::size_t axis) {
     return std::ranges::any_of(design.shells, [axis](const design::OuterShell& shell) {

@@ -89,8 +89,9 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
   }
 }
 
-/// Clears the flag of a curved entrance surface, which excludes the exact engine, if beams can be traced through
-/// tangent planes of the surface. This requires an exact surface instead of a mesh, and that diffraction is requested.
+/// Allows the exact engine behind a curved entrance surface if beams can be traced through tangent planes of the
+/// surface. For this purpose, clears the flag `has_curved_entrance`. Requires a finite part, a request with
+/// diffraction, and an exact surface instead of a mesh.
 /// \param model null if it is not known yet; the surface is then assumed to be exact
 void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySettings& request,
                           raytrace::EngineFacts& facts) {

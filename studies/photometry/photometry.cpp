@@ -442,8 +442,8 @@ bool add_colour(const Photometer& photometer, Progress* progress, const Cancella
   return result.colour.has_value();
 }
 
-/// Combines the models of a curved entrance surface from all readings. Returns the largest difference of each kind, or
-/// nothing if no reading has a model.
+/// Combines the models of a curved entrance surface from all readings. Each difference in the result is the largest one
+/// of all readings. Returns nothing if no reading has a model.
 std::optional<EntranceModel> worst_model(const std::vector<PhotometerReading>& readings) {
   std::optional<EntranceModel> worst;
   for (const PhotometerReading& reading : readings) {

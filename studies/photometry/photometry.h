@@ -251,8 +251,8 @@ struct PhotometryResult {
   std::string engine;
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
-  /// Model of a curved entrance surface with the largest differences of all readings. Empty for a plane entrance face
-  /// and if rays are traced.
+  /// Model of a curved entrance surface, with the largest deviation from this surface over all readings. Empty if the
+  /// entrance face is plane or if rays are traced.
   std::optional<EntranceModel> entrance_model;
   std::vector<PhotometricPoint> points;
   std::vector<PhotometricPoint> measured;  ///< readings at the test points, before lower bounds replaced some of them

@@ -10,8 +10,8 @@
 
 namespace retrace::studies {
 
-/// Number of the account of rays that miss the part. It is equal to the number of raytrace::Account::shell_reflected.
-/// This number is unused for rays, because light that shells reflect is not traced further.
+/// Number of the account for rays that miss the part. It reuses the number of raytrace::Account::shell_reflected. Rays
+/// do not need that account, because light that shells reflect is not traced further.
 inline constexpr auto kMissedAccount = static_cast<std::size_t>(raytrace::Account::shell_reflected);
 
 /// Accounts of rays by their numbers.

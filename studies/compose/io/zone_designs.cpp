@@ -26,7 +26,8 @@ constexpr double kElementsOfRow = 8.0;
 /// Maximum number of rows of all zones together. It limits the number of regions in a design file.
 constexpr double kMaxRows = 120.0;
 
-/// Returns the coordinate for which a given fraction of the part's area within a rectangle has smaller coordinates.
+/// Returns the coordinate that divides the part's area within a rectangle. A given fraction of this area has smaller
+/// coordinates.
 /// \param outline outline of the part, or null for a rectangular part
 /// \param axis 0: coordinate x; 1: coordinate y
 double coordinate_in(const geometry::PlanRegion* outline, const Rectangle& room, Eigen::Index axis, double fraction) {
