@@ -44,7 +44,7 @@ materials::Material material_of(const Design& design, const materials::MaterialL
     try {
       return read();
     } catch (const InputError& error) {
-      // Adds the position of the key that contains the name of the file.
+      // Adds the position of the key that contains the file name to the error message.
       throw InputError(design.where("body.catalogue"), error.what());
     }
   };

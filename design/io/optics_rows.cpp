@@ -41,7 +41,7 @@ constexpr Condition kWithLayerIndex[] = {is_given("refractive_index")};
 constexpr Condition kIndexOfMaterial[] = {
     is_absent("refractive_index", "not allowed together with refractive_index, which holds at every temperature")};
 
-// The keys for the medium of the body and for the media of shells have the same ranges and kinds.
+// Ranges and kinds of values that the keys of the body and the keys of the shells have in common.
 constexpr NumberRange kIndexOfBody{.low = 1.0, .high = 10.0};
 constexpr Kind kAbsorptionNumber = Number{kAtLeastZero};
 constexpr Kind kAbsorptionCurve = Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2};

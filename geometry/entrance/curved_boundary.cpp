@@ -157,8 +157,8 @@ class BoundaryBuilder {
  private:
   Vec2 place(std::uint32_t vertex) const { return mesh_.vertices[vertex].head<2>(); }
 
-  /// Returns the lower borders of the sides for a back without SurfacePatch::border_rim. They are found from the edges
-  /// of the back that belong to only one triangle.
+  /// Returns the lower borders of the sides, for a back whose SurfacePatch::border_rim is not set. The borders are
+  /// found from the edges that belong to only one triangle of the back.
   std::vector<Ring> rims_of_open_edges() const {
     const auto edges = open_edges(mesh_);
     std::map<std::pair<double, double>, std::vector<std::pair<double, std::uint32_t>>> columns;
@@ -230,7 +230,7 @@ class BoundaryBuilder {
   }
 
   /// Adds triangles between a straight lower edge and a curved upper edge. If the upper edge has inner vertices, a row
-  /// of vertices is added between the two edges, parallel to the lower edge. No triangle then extends beyond the strip.
+  /// of vertices is added between the two edges, parallel to the lower edge. This keeps all triangles within the strip.
   void add_strip(std::uint32_t from, std::uint32_t to, const Ring& top) {
     const std::size_t last = top.size() - 1;
     std::vector<double> line_mm;

@@ -123,8 +123,8 @@ constexpr Row kWallRow = {
     access_in<&Substrate::shape, &OffsetSubstrate::wall_mm>,
     kOffsetOnly};
 
-/// Returns a row of the table in designs. It differs from the row of jobs for `kind`, which has one more value, and for
-/// `element_axes`.
+/// Returns row `k` of the table in designs. Most rows are those of the table in jobs. The row of `kind` allows one more
+/// value, and the row of `element_axes` has another condition.
 constexpr Row row_of_design(std::size_t k) {
   if (k == 0) return kKindRowOfDesign;
   return k == kAxesRow ? where(kRows[k], kOfNoPinsOnSurface) : kRows[k];

@@ -15,7 +15,7 @@ struct Inspection {
   Warnings warnings;
   std::string json;   ///< JSON document retrace.inspect/2
   std::string table;  ///< summary as text
-  Drawing plan;       ///< SVG; each of the first four drawings is empty if it does not apply to the design
+  Drawing plan;       ///< SVG; this drawing and the next three are empty if they do not apply to the design
   Drawing section;
   Drawing entrance_surface;  ///< profile of a curved entrance surface
   Drawing shells;            ///< section through the shells in front of the part; empty without shells

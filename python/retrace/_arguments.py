@@ -139,7 +139,7 @@ def pairs(name: str, values: object) -> list[tuple[float, float]]:
 
 
 def word(name: str, value: object, words: Sequence[str] = ()) -> str:
-    """Checks that a value is a text that is not empty. If words are given, it must be one of
+    """Checks that a value is a non-empty text. If words are given, the value must be one of
     them."""
     allowed = ", ".join(words) if words else "a text"
     if not isinstance(value, str) or not value:

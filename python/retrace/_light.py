@@ -217,8 +217,8 @@ def rre(
     standard error and a ledger of all other light, like the command `retrace rre`.
 
     designs: one or more designs or names of their files. incidence_spans_deg: ranges (from, to) in
-    which additional angles of incidence are chosen automatically. They are chosen separately for
-    each design, as many as its curve requires. threads: maximum number of threads [all cores]."""
+    which additional angles of incidence are chosen automatically. Their number and values depend on
+    the curve of each design. threads: maximum number of threads [all cores]."""
     taken = designs_of(designs)
     request = _core.RreRequest()  # generated: sets the fields of the request rre
     if incidence_deg is not None and len(incidence_spans_deg) == 0:

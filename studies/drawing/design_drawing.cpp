@@ -326,8 +326,8 @@ std::vector<PlanZone> zones_of(const design::ZonedPart& zoned, const Part& part)
   return zones;
 }
 
-/// Returns the y coordinate of a row of elements near the centre of the part. The elements of this row have the same
-/// shift along x as the element with dimensions.
+/// Returns the y coordinate of a row of elements near the centre of the part. In this row, elements are shifted along x
+/// by the same distance as in the row of the dimensioned element.
 double row_near_centre_mm(const ArrayFigures& a) {
   const double centre_mm = a.extent_mm.centre().y();
   const double step_mm = (a.shift_mm > 0.0 ? 2.0 : 1.0) * a.pitch_mm.y();

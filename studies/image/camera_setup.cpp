@@ -20,7 +20,7 @@ using geometry::Vec2, geometry::Vec3;
 
 // Width and height, in mm, of the sheet that is shown for an infinite part if the request contains no size.
 constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
-// Width that the picture shows, divided by the width of the part.
+// Ratio of the width shown in the picture to the width of the part.
 constexpr double kMargin = 1.15;
 // Maximum luminance of the lamp and of the surroundings, in cd/m^2. OpenEXR files can store values up to 3.4e38.
 constexpr double kMaxLuminance = 1e30;

@@ -16,7 +16,8 @@
 
 namespace retrace::studies {
 
-/// Number of rays of a pass and maximum number of passes, used if the request does not specify the number of rays.
+/// Number of rays per pass, and maximum number of passes. Both are used if the request does not specify the number of
+/// rays.
 inline constexpr std::uint64_t kDetectorRaysPerPass = std::uint64_t{1} << 22;
 inline constexpr std::uint32_t kMaxDetectorPasses = 8;
 /// Minimum fraction of the light in small bins. Passes are added until this fraction is reached.

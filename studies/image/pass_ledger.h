@@ -48,7 +48,7 @@ class PassLedger : public TaskLedger {
   Progress* progress_;
   const std::function<void()>& after_pass_;
   std::uint32_t goal_;
-  std::size_t max_ahead_;  ///< maximum number of passes that are started before an earlier pass is added
+  std::size_t max_ahead_;  ///< maximum number of passes that may be started while an earlier pass is missing
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> given_back_;
   std::map<std::uint64_t, std::string> ahead_;

@@ -21,8 +21,8 @@ constexpr std::size_t kRefined = 3;
 constexpr double kForRoundness = 1e-6;
 /// Maximum loss of the objective for which a cheaper design is proposed, as a fraction of the objective.
 constexpr double kNearlyAsGood = 0.01;
-/// Minimum gain of a cheaper design on the axis of the Pareto front, as a fraction of the best design's value on the
-/// same axis. Cheaper designs with smaller gains are not proposed.
+/// Minimum gain for which a cheaper design is proposed. It is measured on the axis of the Pareto front, as a fraction
+/// of the best design's value on this axis.
 constexpr double kWorthIt = 1e-3;
 constexpr std::uint64_t kMaxCombinations = 10'000;
 constexpr const char* kStoreKind = "retrace.optimum/1";

@@ -51,8 +51,8 @@ class ElementSample {
     Eigen::MatrixXd powers;
     Eigen::MatrixXd inverse;    ///< pseudo-inverse of `powers`
     Eigen::VectorXd fractions;  ///< portions of the samples, divided by the largest portion
-    /// Contribution of the deviations of individual elements from the polynomial to the variance of the sum. It is
-    /// relative to the variance of a weighted residual of the fit.
+    /// Variance of the sum that is caused by deviations of individual elements from the polynomial, divided by the
+    /// variance of a weighted residual of the fit.
     double deviations = 0.0;
   };
   void add_stratum(const std::vector<raytrace::ElementPortion>& portions, const std::vector<double>& weights,

@@ -15,8 +15,8 @@ namespace retrace::studies {
 /// Geometries to be measured. Each direction of light has one setting, which contains all observation angles.
 struct MeasurementPlan {
   std::vector<PhotometerSetting> settings;
-  /// Readings that belong to each test point, as pairs of the index of a setting and the index of its observation
-  /// angle.
+  /// For each test point, the readings that belong to it. Each pair contains the index of a setting and the index of an
+  /// observation angle of this setting.
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;
 };
 

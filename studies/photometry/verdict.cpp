@@ -7,7 +7,7 @@
 namespace retrace::studies {
 namespace {
 
-// Minimum distance between a reading and a limit, in standard errors, for a definite verdict.
+// Minimum distance of a reading from a limit for a definite verdict, in standard errors.
 constexpr double kErrorsOfAMargin = 2.0;
 
 }  // namespace

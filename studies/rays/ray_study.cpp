@@ -79,8 +79,9 @@ void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitt
   emitter.period_mm = {part.period_mm->x() * source_from_part.col(0), part.period_mm->y() * source_from_part.col(1)};
 }
 
-/// Returns the height above the entrance face that an emitter at the default distance must leave free. It contains the
-/// shells and a margin for emitters that illuminate the shells at oblique incidence. Returns 0 if there are no shells.
+/// Returns the height above the entrance face that must remain free below an emitter at the default distance. It
+/// includes the shells and a margin for emitters that illuminate the shells at oblique incidence. Returns 0 if there
+/// are no shells.
 double height_of_shells(const design::OpticalModel& model) {
   const raytrace::Shells& shells = model.optics.shells;
   if (shells.empty()) return 0.0;
