@@ -98,8 +98,6 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
       lights_.push_back(std::make_shared<const CameraLight>(dyed_, photometry, kSpans, response));
 }
 
-namespace {}  // namespace
-
 /// Tracers of all layers of a picture. The picture of a response is the sum of one or two layers: the light of the
 /// lamp, and that of the surroundings if the part is coloured.
 struct CameraStudy::Tracers {
