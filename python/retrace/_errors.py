@@ -18,7 +18,7 @@ class InputError(Error, ValueError):
         #: Description of the error and the allowed values, without file and line.
         self.message = message
         # For an error in a dict of changes, the library reports a file name that begins with
-        # "--set ". Python has no such file.
+        # "--set ". There is no such file, so the name is removed.
         changed = (file or "").startswith("--set ")
         self.file = None if changed else file or None  #: file that contains the error, or None
         self.line = line or None  #: line of this file, counted from 1

@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
     "absorbed",       "truncated",      "lost",          "shell_reflected"};
 
-/// Returns true if result files contain the account. Files omit `shell_reflected` if its power is 0.
+/// Returns true if result files list this account. They list all accounts, except `shell_reflected` if its power is 0.
 constexpr bool is_listed(Account account, double power) {
   return account != Account::shell_reflected || power != 0.0;
 }
