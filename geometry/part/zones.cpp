@@ -63,8 +63,8 @@ bool is_loss(double lost_mm2, const Polygon& left, double tolerance_mm) {
   return lost_mm2 > tolerance_mm * bounding_box(left).size().norm();
 }
 
-/// Clips the tiles of an array to a region, and to the area that an outline leaves for elements. Tiles that belong to the
-/// same cell must be consecutive.
+/// Clips the tiles of an array to a region, and to the area that an outline leaves for elements. Tiles that belong to
+/// the same cell must be consecutive.
 class RegionCutter {
  public:
   /// \param outline outline of the plate, or null
