@@ -236,10 +236,6 @@ std::string change_text(const PhotometricChange& change, const TestPlan& test_pl
   return text + rows_of(change.points, max_rows) + verdict_text(change.verdict, test_plan);
 }
 
-}  // namespace
-
-namespace {
-
 Json entrance_model_json(const EntranceModel& model) {
   return {{"method", "tangent_planes"},
           {"elements", model.elements},
@@ -253,8 +249,7 @@ Json entrance_model_json(const EntranceModel& model) {
 std::string entrance_model_text(const EntranceModel& model) {
   return fmt::format(
       "curved entrance surface: tangent planes of {} of {} elements; differences from rays: paths {} wavelengths "
-      "(rms), "
-      "directions at most {} arcmin (allowed: {})\n",
+      "(rms), directions at most {} arcmin (allowed: {})\n",
       model.traced_elements, model.elements, fixed_visible(model.path_rms_waves, 3),
       fixed_visible(model.max_angle_arcmin, 3), fixed_visible(model.allowed_angle_arcmin, 2));
 }
