@@ -118,6 +118,25 @@ void check_on_car(const RoadScene& scene, double height_m, double lateral_m) {
                                  fixed(scene.car_tall - half.y(), 4), shortest(height_m)));
 }
 
+/// Adds the position, the black line, the symbol and the mast of a sign to a scene that contains the sign's outline.
+void add_sign(const RoadRequest& request, const Vec2& size_mm, double height_m, double lateral_m, RoadScene& scene) {
+  if (!scene.pieces.empty())
+    throw InputError(Field{"outline"},
+                     "must be the outline of the sign, because the design has notches or holes, got \"auto\"");
+  scene.reflectors = {{lateral_m, height_m, 0.0}};
+  const double side = 1e-3 * size_mm.minCoeff();
+  scene.black = {inset(scene.outline, kLineFrom * side)};
+  scene.windows = {inset(scene.outline, kLineTo * side)};
+  const Vec2 centre = geometry::centroid(scene.windows[0]);
+  if (request.symbol == "arrow")
+    for (const Polygon& part : arrow(centre, inner_radius(scene.windows[0], centre))) scene.black.push_back(part);
+  scene.mast_height = request.mast_m.value_or(height_m + 0.5e-3 * size_mm.y());
+  scene.mast_width = std::min(scene.mast_width, 0.4 * scene.size().x());
+  if (scene.mast_height < height_m)
+    throw InputError(Field{"mast_m"}, fmt::format("must be at least the height of the centre of the sign, {}, got {}",
+                                                  shortest(height_m), shortest(scene.mast_height)));
+}
+
 /// Returns the convex hull of one or more convex polygons. A single polygon is returned unchanged.
 Polygon hull_of(const std::vector<Polygon>& polygons) {
   if (polygons.size() == 1) return polygons.front();
@@ -184,21 +203,7 @@ RoadScene scene_of(const RoadRequest& request, const std::vector<Polygon>& desig
     scene.reflectors = {{-lateral_m, height_m, 0.0}, {lateral_m, height_m, 0.0}};
     return scene;
   }
-  if (!scene.pieces.empty())
-    throw InputError(Field{"outline"},
-                     "must be the outline of the sign, because the design has notches or holes, got \"auto\"");
-  scene.reflectors = {{lateral_m, height_m, 0.0}};
-  const double side = 1e-3 * size_mm.minCoeff();
-  scene.black = {inset(scene.outline, kLineFrom * side)};
-  scene.windows = {inset(scene.outline, kLineTo * side)};
-  const Vec2 centre = geometry::centroid(scene.windows[0]);
-  if (request.symbol == "arrow")
-    for (const Polygon& part : arrow(centre, inner_radius(scene.windows[0], centre))) scene.black.push_back(part);
-  scene.mast_height = request.mast_m.value_or(height_m + 0.5e-3 * size_mm.y());
-  scene.mast_width = std::min(scene.mast_width, 0.4 * scene.size().x());
-  if (scene.mast_height < height_m)
-    throw InputError(Field{"mast_m"}, fmt::format("must be at least the height of the centre of the sign, {}, got {}",
-                                                  shortest(height_m), shortest(scene.mast_height)));
+  add_sign(request, size_mm, height_m, lateral_m, scene);
   return scene;
 }
 
