@@ -17,6 +17,7 @@
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
 #include "fabrication/job/io/given_access.h"
+#include "fabrication/job/io/job_outline.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
@@ -47,15 +48,7 @@ constexpr double kMaxElements = 2e6;
 constexpr std::size_t kMaxZoneElements = 2'000'000;
 /// Tolerance, in mm, of the check that the tool is not wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
-/// Maximum relative difference between the lengths of an array and the size of its outline that counts as rounding.
-constexpr double kSameLength = 1e-9;
 constexpr std::size_t kMaxChips = 100;
-/// Maximum number of corners of each border, maximum number of borders, and maximum total number of polygon corners
-/// that replace all borders of an outline.
-constexpr std::size_t kMaxBorderCorners = 2000;
-constexpr std::size_t kMaxBorders = 101;
-constexpr double kMaxPolygonCorners = 2000.0;
-constexpr double kMaxBulge = 100.0;
 /// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves through the
 /// gap between them. The value is an assumption: if the angle between the facets is 90, the wedge angle 50 and the
 /// clearance angle 15 degrees, the gap is 25 degrees. Half of this gap is required.
@@ -135,22 +128,6 @@ void set_apexes(CutZone& zone, const Value& value) {
     zone.apexes_mm.emplace_back(apex[0], apex[1]);
 }
 
-Value get_corners(const JobBorder& border) {
-  std::vector<std::vector<double>> corners;
-  for (const geometry::OutlineSide& side : border.sides)
-    corners.push_back({side.from_mm.x(), side.from_mm.y(), side.bulge});
-  return corners;
-}
-void set_corners(JobBorder& border, const Value& value) {
-  border.sides.clear();
-  const auto& corners = std::get<std::vector<std::vector<double>>>(value);
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const std::vector<double>& from = corners[k];
-    const std::vector<double>& to = corners[(k + 1) % corners.size()];
-    border.sides.push_back({{from[0], from[1]}, {to[0], to[1]}, from[2]});
-  }
-}
-
 bool has_edge_life(const Tool& tool) {
   return tool.edge_life_mm.has_value();
 }
@@ -160,7 +137,6 @@ constexpr Condition kOfPrisms[] = {is(kElementKind, only(geometry::kElementKinds
 constexpr Condition kOfCubes[] = {is(kElementKind, geometry::kCubeKinds)};
 constexpr Condition kOfHexagons[] = {is(kElementKind, only(geometry::kElementKinds, "hexagonal_icc"))};
 constexpr Condition kOfTriangles[] = {is(kElementKind, only(geometry::kElementKinds, "triangular_icc"))};
-constexpr Condition kOfArraysOnly[] = {is_not("array.arrangement", only(geometry::kArrangementWords, "single"))};
 constexpr Condition kOfArrays[] = {is_not("arrangement", only(geometry::kArrangementWords, "single"))};
 constexpr Condition kOfChisels[] = {is_not("strategy", only(kStrategyWords, "dmc"))};
 constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
@@ -246,15 +222,6 @@ constexpr Row kArrayRows[] = {
      "and is never cut. A row of cube corners contains the elements with equal y that are completely inside the "
      "margins.",
      access<&ArrayLayout::pattern>, kOfArrays}};
-constexpr Row kBorderRows[] = {
-    {"corners_mm", NumberRows{3, {.low = -1e4, .high = 1e4}, 2, kMaxBorderCorners, "corners"}, kRequired,
-     "`[[x, y, bulge], ...]`: corners of the border in their order, in x and y of the part. `bulge` describes the side "
-     "from this corner to the next: 0 for a straight side, otherwise the tangent of a quarter of the arc's angle, "
-     "positive if the arc runs counter-clockwise.",
-     access_by<get_corners, set_corners>}};
-constexpr Row kOutlineRows[] = {{"tolerance_mm", Number{{.low = 1e-6, .high = 1e4}}, 0.005,
-                                 "Maximum distance between an arc and the sides of the polygon that replaces it.",
-                                 access<&JobOutline::tolerance_mm>}};
 constexpr Row kChipRows[] = {
     {"position_um", Number{}, kRequired,
      "Position of the chip's centre along the edge, measured from the centre of the edge towards +X of the machine.",
@@ -322,18 +289,6 @@ constexpr Child kBase = {
     [](const void* job, std::size_t) -> const void* { return &*static_cast<const Job*>(job)->substrate; },
     [](void* job) -> void* { return &static_cast<Job*>(job)->substrate.emplace(); }};
 
-constexpr Child kOutline = {
-    [](const void* job) -> std::size_t { return static_cast<const Job*>(job)->outline ? 1 : 0; },
-    [](const void* job, std::size_t) -> const void* { return &*static_cast<const Job*>(job)->outline; },
-    [](void* job) -> void* { return &static_cast<Job*>(job)->outline.emplace(); }};
-constexpr Table kOutlineTables[] = {
-    {.name = "borders",
-     .meaning = "Borders of the outline: the outer border, followed by the borders of holes. At most 101 borders are "
-                "allowed.",
-     .rows = kBorderRows,
-     .child = children<&JobOutline::borders>,
-     .presence = Presence::list}};
-
 const Table kJobTables[] = {
     {.name = "workpiece",
      .meaning = "Workpiece that is cut.",
@@ -345,15 +300,7 @@ const Table kJobTables[] = {
      .meaning = "Arrangement of the elements. At most 2,000,000 elements are allowed.",
      .rows = kArrayRows,
      .child = child<&Job::array>},
-    {.name = "outline",
-     .meaning =
-         "Outline of a part that is not a rectangle. Only elements that are completely inside it, and outside of "
-         "the margin `x_offset_mm` = `y_offset_mm` along its borders, are cut.",
-     .rows = kOutlineRows,
-     .tables = kOutlineTables,
-     .child = kOutline,
-     .presence = Presence::optional,
-     .when = kOfArraysOnly},
+    outline_table(),
     {.name = "zone",
      .meaning = "Zone: equal cube corners at given positions. If there are zones, they are cut instead of the array, "
                 "and only the lengths of `[array]` are used.",
@@ -519,58 +466,6 @@ void check_substrate(const Job& job, const Refuse& refuse) {
   } catch (const InputError& error) {
     refuse(geometry::substrate_shape_key(*job.substrate), error.what());
   }
-}
-
-/// Checks the borders of the outline, and checks that the lengths of the array are the size of the outline.
-void check_borders(const Job& job, const Refuse& refuse) {
-  double corners = 0.0;
-  for (std::size_t k = 0; k < job.outline->borders.size(); ++k) {
-    const std::vector<geometry::OutlineSide>& sides = job.outline->borders[k].sides;
-    for (const geometry::OutlineSide& side : sides)
-      if (std::abs(side.bulge) > kMaxBulge)
-        refuse(path_in(path_of_entry("outline.borders", k), "corners_mm"),
-               fmt::format("must have bulges from -{0} to {0}, got {1}", shortest(kMaxBulge), shortest(side.bulge)));
-    for (std::size_t i = 0; i < sides.size(); ++i)
-      if (sides[i].from_mm == sides[i].to_mm)
-        refuse(path_in(path_of_entry("outline.borders", k), "corners_mm"),
-               fmt::format("must contain each corner only once, got [{}, {}] twice in succession",
-                           shortest(sides[i].from_mm.x()), shortest(sides[i].from_mm.y())));
-    corners += geometry::estimated_corner_count(sides, job.outline->tolerance_mm);
-  }
-  if (job.outline->borders.empty() || job.outline->borders.size() > kMaxBorders)
-    refuse("outline.borders", fmt::format("must be 1 to {} borders, got {}", kMaxBorders, job.outline->borders.size()));
-  if (corners > kMaxPolygonCorners)
-    refuse(
-        "outline.tolerance_mm",
-        fmt::format("must be larger, because the polygon of the outline would have about {:.0f} corners, but at most "
-                    "{:.0f} are allowed, got {}",
-                    corners, kMaxPolygonCorners, shortest(job.outline->tolerance_mm)));
-}
-
-/// Checks the outline of the part, and that at least one element is completely inside it.
-void check_outline(const Job& job, const Refuse& refuse) {
-  if (!job.outline) return;
-  check_borders(job, refuse);
-  const ArrayLayout& array = job.array;
-  if (array.x_offset_mm != array.y_offset_mm)
-    refuse("array.y_offset_mm", fmt::format("must equal x_offset_mm ({}) together with [outline], got {}",
-                                            shortest(array.x_offset_mm), shortest(array.y_offset_mm)));
-  if (!array.pattern.empty() && !cuts_prisms(job))
-    refuse("array.pattern", "only allowed for prisms together with [outline]");
-  std::optional<geometry::OutlineFault> fault;
-  const geometry::PlanRegion plan = plan_of_outline(job, fault);
-  if (fault)
-    refuse(fault->subject == geometry::OutlineFault::Subject::margin ? "array.x_offset_mm" : "outline.borders",
-           fault->text);
-  const geometry::Vec2 size_mm = plan.box_mm.size();
-  for (const auto& [key, given_mm, needed_mm] : {std::tuple("array.x_length_mm", array.x_length_mm, size_mm.x()),
-                                                 {"array.y_length_mm", array.y_length_mm, size_mm.y()}})
-    if (std::abs(given_mm - needed_mm) > kSameLength * needed_mm)
-      refuse(key, fmt::format("must be {}, the size of the outline, got {}", fixed_apart(needed_mm, given_mm, 6),
-                              shortest(given_mm)));
-  Job cut = job;
-  cut.array.outline = std::make_shared<const geometry::PlanRegion>(plan);
-  if (cut_elements(cut).empty()) refuse("outline", "must have room for at least one whole element");
 }
 
 void check_machine(const Job& job, const Refuse& refuse) {
