@@ -250,16 +250,13 @@ class Photometer {
                                const std::vector<double>& weights) const;
   /// Returns true if light is traced as beams through tangent planes of a curved entrance surface.
   bool uses_tangent_planes() const { return is_exact() && model_.entrance.has_value(); }
-  /// Reading of one sampled element at one wavelength, for all settings with the same direction of light.
-  struct ElementReading;
+  /// Samples, traces and sums the light of elements for measure_behind_surface().
+  class SurfaceMeasurement;
   /// Measures all settings behind a curved entrance surface. Beams are traced at a sample of the elements. Returns
   /// nothing if the measurement was cancelled.
   std::optional<std::vector<PhotometerReading>> measure_behind_surface(const std::vector<PhotometerSetting>& settings,
                                                                        Progress* progress,
                                                                        const Cancellation* cancel) const;
-  ElementReading measure_element(const std::vector<PhotometerSetting>& settings, const EquivalentDirections& directions,
-                                 const raytrace::ElementLight& elements, std::size_t element, std::size_t wavelength,
-                                 bool compares_rays, const Cancellation* cancel) const;
   /// Adds the light that the curved entrance surface reflects at its outer side. `sum` is the sum over all wavelengths.
   void add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
                               const raytrace::ElementLight& elements, WavelengthReading& sum) const;

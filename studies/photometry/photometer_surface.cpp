@@ -73,13 +73,24 @@ SampledSum sum_of(const ElementSample& sample, const Readings& readings, const V
   return sample.sum(values);
 }
 
-}  // namespace
+/// Power of returned beams in an acceptance cone.
+struct ConePower {
+  double returned = 0.0;
+  double scattered_out = 0.0;  ///< power that rough facets scatter out of the beams in the cone
 
-struct Photometer::ElementReading {
-  std::vector<WavelengthReading> pieces;  ///< one for each setting, divided by the light on the element
-  raytrace::TangentError error;
-  bool is_complete = false;
+  /// Adds the power of a beam, spread over its directions.
+  void add(const raytrace::ReturnedBeam& beam, const Vec3& axis, double half_angle_deg) {
+    double variance = 0.0;
+    for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
+    for (const raytrace::DirectionSample& sample : spread_directions(beam))
+      if (is_within(sample.direction, axis, half_angle_deg)) {
+        returned += sample.power_fraction * beam.stokes.i;
+        scattered_out -= std::expm1(-variance) * sample.power_fraction * beam.stokes.i;
+      }
+  }
 };
+
+}  // namespace
 
 double Photometer::body_transmittance(std::size_t wavelength) const {
   const double path_mm = 2.0 * (model_.part.thickness_mm + model_.part.element_depth_mm);
@@ -94,93 +105,6 @@ std::size_t Photometer::max_element_samples(const std::vector<PhotometerSetting>
   const std::size_t usual = effort_ == Effort::full ? kSamples : kFewSamples;
   const double wanted = static_cast<double>(usual) * std::min(1.0, kAnglesOfSamples / std::max(1.0, angles));
   return std::max(kMinSamples, static_cast<std::size_t>(wanted));
-}
-
-Photometer::ElementReading Photometer::measure_element(const std::vector<PhotometerSetting>& settings,
-                                                       const EquivalentDirections& directions,
-                                                       const raytrace::ElementLight& elements, std::size_t element,
-                                                       std::size_t wavelength, bool compares_rays,
-                                                       const Cancellation* cancel) const {
-  ElementReading reading;
-  const design::SpectralOptics& light = model_.spectral[wavelength];
-  const Vec3 to_source = frame_of(settings[directions.front().index]).to_source;
-  const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
-  WavelengthReading common;
-  const std::unique_ptr<const raytrace::ElementScene> scene = elements.scene(element, to_source, light.optics.index);
-  if (!scene || !scene->is_lit) {
-    for (const SharedDirection& one : directions) {
-      const PhotometerSetting& setting = settings[one.index];
-      common.per_sr.assign(setting.observation_deg.size(), 0.0);
-      common.missing_per_sr = common.per_sr;
-      common.map_per_sr.assign(setting.map_columns * setting.map_columns, 0.0);
-      reading.pieces.push_back(common);
-    }
-    // If an element has no tangent plane, its light is missing in the reading.
-    if (!scene) reading.error.add_failure();
-    reading.is_complete = true;
-    return reading;
-  }
-  const raytrace::Illumination illumination = illumination_of(*scene, to_source, design_.light.polarisation);
-  raytrace::FarFieldCollector collector(scene->excerpt.part, illumination, far_field_policy(light, cancel));
-  raytrace::BeamPolicy policy;
-  policy.cutoff = cutoff_of_element();
-  policy.separate_cells = true;
-  policy.keeps_phases = keeps_phases();
-  double scattered_from_cone = 0.0;
-  const raytrace::BeamResult beams =
-      trace_element(*scene, light.optics, illumination, cones, policy, cancel, [&](const raytrace::ReturnedBeam& beam) {
-        if (!has_mirror_image_ && beam.entry_from_exit.linear().trace() >= kMinTraceOfMirror) return;
-        collector.add(beam);
-        double variance = 0.0;
-        for (const raytrace::TexturedHit& hit : beam.hits) variance += hit.phase.variance();
-        for (const raytrace::DirectionSample& sample : spread_directions(beam))
-          if (is_within(sample.direction, scene->to_source, cones.back())) {
-            common.rre += sample.power_fraction * beam.stokes.i;
-            scattered_from_cone -= std::expm1(-variance) * sample.power_fraction * beam.stokes.i;
-          }
-        const bool is_in_window = is_within(beam.direction, scene->to_source, 1.5 * request_.window_deg) &&
-                                  beam.stokes.i > kMinComparedPower * body_transmittance(wavelength);
-        if (compares_rays && is_in_window) reading.error.add(elements.surface(), *scene, beam);
-      });
-  if (!beams.complete) return reading;
-  const raytrace::FarField field = collector.finish();
-  const double truncated = beams.ledgers.back()[raytrace::Account::truncated];
-  const double beside = beams.ledgers.back()[raytrace::Account::side_exit];
-  common.truncated = truncated + beside;
-  if (keeps_phases()) {
-    common.rre += field.scattered_within(scene->frame(traced_frame(settings[directions.front().index], {})),
-                                         Angle::from_deg(cones.back()).rad()) -
-                  scattered_from_cone;
-    common.truncated += field.unplaced_power();
-  }
-  common.beyond_budget = field.beyond_budget_power();
-  const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
-  const double factor = scene->power_factor / (scene->fraction * body_transmittance(wavelength));
-  for (const SharedDirection& one : directions) {
-    const PhotometerSetting& setting = settings[one.index];
-    const ReturnFrame frame = scene->frame(traced_frame(setting, one));
-    WavelengthReading piece = common;
-    for (const double observation_deg : setting.observation_deg) {
-      const Vec3 receiver = towards_receiver(frame, observation_deg);
-      const double seen = field.intensity(receiver, kernel_).per_sr;
-      // Light that leaves the excerpt around an element meets other elements. They are assumed to return it with the
-      // same efficiency.
-      const double missing = (common.rre > 0.0 ? truncated / common.rre * seen : 0.0) + beside * seen +
-                             unplaced * field.scattered_per_sr(receiver, kernel_);
-      piece.per_sr.push_back(factor * seen);
-      piece.missing_per_sr.push_back(factor * missing);
-    }
-    if (setting.map_columns > 0) {
-      const raytrace::DirectionGrid grid = grid_of_map(setting, request_.window_deg);
-      piece.map_per_sr = field.binned(frame, grid);
-      piece.map_per_sr.pop_back();
-      for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] *= factor / grid.solid_angle_sr(bin);
-    }
-    for (double* const power : {&piece.rre, &piece.truncated, &piece.beyond_budget}) *power *= factor;
-    reading.pieces.push_back(std::move(piece));
-  }
-  reading.is_complete = !is_cancelled(cancel);
-  return reading;
 }
 
 void Photometer::add_surface_reflection(const PhotometerSetting& setting, const SharedDirection& shared,
@@ -217,104 +141,305 @@ void Photometer::add_surface_reflection(const PhotometerSetting& setting, const 
       });
 }
 
-std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface(
-    const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
-  const raytrace::ElementLight elements(model_.part, std::get<0>(*model_.entrance));
+/// Measurement of settings behind a curved entrance surface. Beams are traced at a sample of the elements.
+class Photometer::SurfaceMeasurement {
+ public:
+  /// Selects the elements and wavelengths that are traced. All arguments must outlive this object.
+  SurfaceMeasurement(const Photometer& photometer, const std::vector<PhotometerSetting>& settings,
+                     const Cancellation* cancel);
+
+  /// Traces the samples of all directions.
+  /// \throw BudgetError if the engine is `auto` and the tangent-plane model deviates too much from rays
+  void trace(Progress* progress);
+  /// Returns the readings of all settings, or nothing if the measurement was cancelled.
+  std::optional<std::vector<PhotometerReading>> readings() const;
+
+ private:
+  /// Reading of one sampled element at one wavelength, for all settings with the same direction of light.
+  struct ElementReading {
+    std::vector<WavelengthReading> pieces;  ///< one for each setting, divided by the light on the element
+    raytrace::TangentError error;
+    bool is_complete = false;
+  };
+  /// Settings that share a direction of light, and the sample that is traced for them.
   struct Direction {
     EquivalentDirections alike;
     std::size_t lit_elements = 0;
     std::unique_ptr<const ElementSample> sample;
     std::vector<ElementReading> readings;
   };
-  std::vector<double> weights = weights_;
-  for (std::size_t w = 0; w < weights.size(); ++w) weights[w] *= body_transmittance(w);
-  std::vector<Direction> directions;
-  std::vector<std::pair<std::size_t, std::size_t>> tasks;  // indices of direction and sample
-  for (EquivalentDirections& alike : group_equivalent_settings(settings)) {
-    Direction& one = directions.emplace_back();
-    one.alike = std::move(alike);
-    std::vector<PhotometerSetting> own;
-    for (const SharedDirection& shared : one.alike) own.push_back(settings[shared.index]);
-    const double index = model_.spectral[model_.nearest_wavelength()].optics.index;
-    const std::vector<raytrace::ElementPortion> portions = elements.portions(frame_of(own.front()).to_source, index);
-    one.lit_elements = static_cast<std::size_t>(std::count_if(
-        portions.begin(), portions.end(), [](const raytrace::ElementPortion& p) { return p.fraction > 0.0; }));
-    one.sample = std::make_unique<const ElementSample>(portions, weights, max_element_samples(own));
-    one.readings.resize(one.sample->samples().size());
-    for (std::size_t k = 0; k < one.readings.size(); ++k) tasks.emplace_back(directions.size() - 1, k);
-  }
+  /// Sample that is traced for one direction of light.
+  struct SampleTask {
+    std::size_t direction = 0;  ///< index of the direction
+    std::size_t sample = 0;     ///< index of the sample of this direction
+
+    /// Returns true if the tangent-plane model is compared with rays for this sample.
+    bool compares_rays() const { return sample % kComparedSamples == 0; }
+  };
+  /// Far field of one element, and the ratios that estimate the light that is missing in it.
+  struct ElementField {
+    const raytrace::FarField& field;
+    double truncated = 0.0;  ///< truncated power, divided by the returned power
+    double beside = 0.0;     ///< power that leaves the excerpt around the element
+    double unplaced = 0.0;   ///< scattered power of unknown direction, divided by all scattered power
+    /// Factor that converts powers of the excerpt to fractions of the light on the element, divided by the
+    /// transmittance of the body.
+    double factor = 0.0;
+  };
+
+  /// Adds the settings of one direction of light, and selects the sample that is traced for them.
+  void add_direction(EquivalentDirections alike);
+  /// Traces the tasks from index `from` to index `to`, exclusive, in parallel.
+  void trace_tasks(std::size_t from, std::size_t to, TaskProgress& all);
+  /// Measures one sample.
+  /// \param compares_rays true: the tangent-plane model is compared with rays
+  ElementReading measure_element(const EquivalentDirections& directions, const SampledElement& sampled,
+                                 bool compares_rays) const;
+  /// Returns readings without light, one for each setting.
+  std::vector<WavelengthReading> dark_pieces(const EquivalentDirections& directions) const;
+  /// Evaluates the far field of an element for one setting.
+  /// \param piece reading that contains the powers of all directions, not yet multiplied by ElementField::factor
+  WavelengthReading read_element(const SharedDirection& shared, const raytrace::ElementScene& scene,
+                                 const ElementField& element, WavelengthReading piece) const;
+  /// Estimates the reading of one setting, for all elements and wavelengths.
+  /// \param s index of the setting in Direction::alike
+  WavelengthReading sum_of_samples(const Direction& one, std::size_t s) const;
+  /// Describes the tangent-plane model of the settings of one direction.
+  EntranceModel entrance_model(const Direction& one, const raytrace::TangentError& error) const;
+  /// Returns the maximum allowed angle between rays and the tangent-plane model.
+  double allowed_rad() const { return kMaxAngleFraction * photometer_.kernel_.reach_rad(); }
+
+  const Photometer& photometer_;
+  const std::vector<PhotometerSetting>& settings_;
+  const Cancellation* cancel_;
+  raytrace::ElementLight elements_;
+  std::vector<Direction> directions_;
+  std::vector<SampleTask> tasks_;
+};
+
+Photometer::SurfaceMeasurement::SurfaceMeasurement(const Photometer& photometer,
+                                                   const std::vector<PhotometerSetting>& settings,
+                                                   const Cancellation* cancel)
+    : photometer_(photometer),
+      settings_(settings),
+      cancel_(cancel),
+      elements_(photometer.model_.part, std::get<0>(*photometer.model_.entrance)) {
+  for (EquivalentDirections& alike : photometer_.group_equivalent_settings(settings_)) add_direction(std::move(alike));
+}
+
+void Photometer::SurfaceMeasurement::add_direction(EquivalentDirections alike) {
+  const design::OpticalModel& model = photometer_.model_;
+  std::vector<double> weights = photometer_.weights_;
+  for (std::size_t w = 0; w < weights.size(); ++w) weights[w] *= photometer_.body_transmittance(w);
+  Direction& one = directions_.emplace_back();
+  one.alike = std::move(alike);
+  std::vector<PhotometerSetting> own;
+  for (const SharedDirection& shared : one.alike) own.push_back(settings_[shared.index]);
+  const double index = model.spectral[model.nearest_wavelength()].optics.index;
+  const std::vector<raytrace::ElementPortion> portions = elements_.portions(frame_of(own.front()).to_source, index);
+  one.lit_elements = static_cast<std::size_t>(std::count_if(
+      portions.begin(), portions.end(), [](const raytrace::ElementPortion& p) { return p.fraction > 0.0; }));
+  one.sample = std::make_unique<const ElementSample>(portions, weights, photometer_.max_element_samples(own));
+  one.readings.resize(one.sample->samples().size());
+  for (std::size_t k = 0; k < one.readings.size(); ++k) tasks_.push_back({directions_.size() - 1, k});
+}
+
+void Photometer::SurfaceMeasurement::trace(Progress* progress) {
   // Samples that are compared with rays come first. If the comparison fails for one of them, no further samples are
   // traced.
-  const auto compared = [](const std::pair<std::size_t, std::size_t>& task) {
-    return task.second % kComparedSamples == 0;
-  };
-  const auto first_other = std::stable_partition(tasks.begin(), tasks.end(), compared);
-  TaskProgress all(progress, std::max<std::size_t>(1, tasks.size()));
-  const auto trace = [&](std::size_t from, std::size_t to) {
-    for_each_within_memory(to - from, [&](std::size_t k) {
-      if (is_cancelled(cancel)) return;
-      TaskProgress::Task task(all);
-      Direction& one = directions[tasks[from + k].first];
-      const std::size_t number = tasks[from + k].second;
-      const SampledElement& sampled = one.sample->samples()[number];
-      one.readings[number] = measure_element(settings, one.alike, elements, sampled.element, sampled.wavelength,
-                                             compared(tasks[from + k]), cancel);
-      task.finish();
-    });
-  };
-  const auto checked = static_cast<std::size_t>(first_other - tasks.begin());
-  const double allowed_rad = kMaxAngleFraction * kernel_.reach_rad();
-  trace(0, checked);
-  for (const Direction& one : directions)
+  const auto first_other =
+      std::stable_partition(tasks_.begin(), tasks_.end(), [](const SampleTask& task) { return task.compares_rays(); });
+  TaskProgress all(progress, std::max<std::size_t>(1, tasks_.size()));
+  const auto checked = static_cast<std::size_t>(first_other - tasks_.begin());
+  trace_tasks(0, checked, all);
+  for (const Direction& one : directions_)
     for (const ElementReading& reading : one.readings)
-      if (request_.engine == raytrace::Engine::automatic && !(reading.error.max_angle_rad() <= allowed_rad))
+      if (photometer_.request_.engine == raytrace::Engine::automatic &&
+          !(reading.error.max_angle_rad() <= allowed_rad()))
         throw BudgetError(text_of(Undiffracted::strong_curvature));
-  trace(checked, tasks.size());
-  std::vector<PhotometerReading> readings(settings.size());
-  for (const Direction& one : directions) {
+  trace_tasks(checked, tasks_.size(), all);
+}
+
+void Photometer::SurfaceMeasurement::trace_tasks(std::size_t from, std::size_t to, TaskProgress& all) {
+  for_each_within_memory(to - from, [&](std::size_t k) {
+    if (is_cancelled(cancel_)) return;
+    TaskProgress::Task task(all);
+    const SampleTask& traced = tasks_[from + k];
+    Direction& one = directions_[traced.direction];
+    one.readings[traced.sample] =
+        measure_element(one.alike, one.sample->samples()[traced.sample], traced.compares_rays());
+    task.finish();
+  });
+}
+
+Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::measure_element(
+    const EquivalentDirections& directions, const SampledElement& sampled, bool compares_rays) const {
+  ElementReading reading;
+  const design::SpectralOptics& light = photometer_.model_.spectral[sampled.wavelength];
+  const double transmittance = photometer_.body_transmittance(sampled.wavelength);
+  const Vec3 to_source = frame_of(settings_[directions.front().index]).to_source;
+  const std::vector<double>& cones = photometer_.design_.detector.acceptance_half_angle_deg;
+  WavelengthReading common;
+  const std::unique_ptr<const raytrace::ElementScene> scene =
+      elements_.scene(sampled.element, to_source, light.optics.index);
+  if (!scene || !scene->is_lit) {
+    reading.pieces = dark_pieces(directions);
+    // If an element has no tangent plane, its light is missing in the reading.
+    if (!scene) reading.error.add_failure();
+    reading.is_complete = true;
+    return reading;
+  }
+  const raytrace::Illumination illumination =
+      illumination_of(*scene, to_source, photometer_.design_.light.polarisation);
+  raytrace::FarFieldCollector collector(scene->excerpt.part, illumination,
+                                        photometer_.far_field_policy(light, cancel_));
+  raytrace::BeamPolicy policy;
+  policy.cutoff = photometer_.cutoff_of_element();
+  policy.separate_cells = true;
+  policy.keeps_phases = photometer_.keeps_phases();
+  ConePower cone;
+  const raytrace::BeamResult beams = trace_element(
+      *scene, light.optics, illumination, cones, policy, cancel_, [&](const raytrace::ReturnedBeam& beam) {
+        if (!photometer_.has_mirror_image_ && beam.entry_from_exit.linear().trace() >= kMinTraceOfMirror) return;
+        collector.add(beam);
+        cone.add(beam, scene->to_source, cones.back());
+        const bool is_in_window = is_within(beam.direction, scene->to_source, 1.5 * photometer_.request_.window_deg) &&
+                                  beam.stokes.i > kMinComparedPower * transmittance;
+        if (compares_rays && is_in_window) reading.error.add(elements_.surface(), *scene, beam);
+      });
+  if (!beams.complete) return reading;
+  const raytrace::FarField field = collector.finish();
+  const double truncated = beams.ledgers.back()[raytrace::Account::truncated];
+  const double beside = beams.ledgers.back()[raytrace::Account::side_exit];
+  common.rre = cone.returned;
+  common.truncated = truncated + beside;
+  if (photometer_.keeps_phases()) {
+    common.rre += field.scattered_within(scene->frame(traced_frame(settings_[directions.front().index], {})),
+                                         Angle::from_deg(cones.back()).rad()) -
+                  cone.scattered_out;
+    common.truncated += field.unplaced_power();
+  }
+  common.beyond_budget = field.beyond_budget_power();
+  const ElementField element = {
+      .field = field,
+      .truncated = common.rre > 0.0 ? truncated / common.rre : 0.0,
+      .beside = beside,
+      .unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0,
+      .factor = scene->power_factor / (scene->fraction * transmittance)};
+  for (const SharedDirection& one : directions) reading.pieces.push_back(read_element(one, *scene, element, common));
+  reading.is_complete = !is_cancelled(cancel_);
+  return reading;
+}
+
+std::vector<Photometer::WavelengthReading> Photometer::SurfaceMeasurement::dark_pieces(
+    const EquivalentDirections& directions) const {
+  std::vector<WavelengthReading> pieces;
+  for (const SharedDirection& one : directions) {
+    const PhotometerSetting& setting = settings_[one.index];
+    WavelengthReading& piece = pieces.emplace_back();
+    piece.per_sr.assign(setting.observation_deg.size(), 0.0);
+    piece.missing_per_sr = piece.per_sr;
+    piece.map_per_sr.assign(setting.map_columns * setting.map_columns, 0.0);
+  }
+  return pieces;
+}
+
+Photometer::WavelengthReading Photometer::SurfaceMeasurement::read_element(const SharedDirection& shared,
+                                                                           const raytrace::ElementScene& scene,
+                                                                           const ElementField& element,
+                                                                           WavelengthReading piece) const {
+  const PhotometerSetting& setting = settings_[shared.index];
+  const raytrace::ApertureKernel& kernel = photometer_.kernel_;
+  const ReturnFrame frame = scene.frame(traced_frame(setting, shared));
+  for (const double observation_deg : setting.observation_deg) {
+    const Vec3 receiver = towards_receiver(frame, observation_deg);
+    const double seen = element.field.intensity(receiver, kernel).per_sr;
+    // Light that leaves the excerpt around an element meets other elements. They are assumed to return it with the
+    // same efficiency.
+    const double missing = element.truncated * seen + element.beside * seen +
+                           element.unplaced * element.field.scattered_per_sr(receiver, kernel);
+    piece.per_sr.push_back(element.factor * seen);
+    piece.missing_per_sr.push_back(element.factor * missing);
+  }
+  if (setting.map_columns > 0) {
+    const raytrace::DirectionGrid grid = grid_of_map(setting, photometer_.request_.window_deg);
+    piece.map_per_sr = element.field.binned(frame, grid);
+    piece.map_per_sr.pop_back();
+    for (std::size_t bin = 0; bin < grid.size(); ++bin)
+      piece.map_per_sr[bin] *= element.factor / grid.solid_angle_sr(bin);
+  }
+  for (double* const power : {&piece.rre, &piece.truncated, &piece.beyond_budget}) *power *= element.factor;
+  return piece;
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::SurfaceMeasurement::readings() const {
+  std::vector<PhotometerReading> readings(settings_.size());
+  for (const Direction& one : directions_) {
     raytrace::TangentError error;
     for (const ElementReading& reading : one.readings) {
       if (!reading.is_complete) return std::nullopt;
       error.add(reading.error);
     }
-    std::vector<std::size_t> traced;
-    for (const SampledElement& sampled : one.sample->samples()) traced.push_back(sampled.element);
-    std::sort(traced.begin(), traced.end());
-    const auto distinct = std::unique(traced.begin(), traced.end()) - traced.begin();
+    const EntranceModel model = entrance_model(one, error);
     for (std::size_t s = 0; s < one.alike.size(); ++s) {
-      const PhotometerSetting& setting = settings[one.alike[s].index];
-      const auto estimate = [&](const auto& value) {
-        return sum_of(*one.sample, one.readings, [&](const ElementReading& r) { return value(r.pieces[s]); });
-      };
-      WavelengthReading sum;
-      for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
-        const SampledSum seen = estimate([k](const WavelengthReading& r) { return r.per_sr[k]; });
-        sum.per_sr.push_back(std::max(0.0, seen.value));
-        sum.error_per_sr.push_back(seen.std_error);
-        sum.missing_per_sr.push_back(estimate([k](const WavelengthReading& r) { return r.missing_per_sr[k]; }).value);
-      }
-      for (std::size_t bin = 0; bin < setting.map_columns * setting.map_columns; ++bin)
-        sum.map_per_sr.push_back(
-            std::max(0.0, estimate([bin](const WavelengthReading& r) { return r.map_per_sr[bin]; }).value));
-      const SampledSum rre = estimate([](const WavelengthReading& r) { return r.rre; });
-      sum.rre = rre.value;
-      sum.std_error = rre.std_error;
-      sum.truncated = std::max(0.0, estimate([](const WavelengthReading& r) { return r.truncated; }).value);
-      sum.beyond_budget = estimate([](const WavelengthReading& r) { return r.beyond_budget; }).value;
-      add_surface_reflection(setting, one.alike[s], elements, sum);
+      const PhotometerSetting& setting = settings_[one.alike[s].index];
+      WavelengthReading sum = sum_of_samples(one, s);
+      photometer_.add_surface_reflection(setting, one.alike[s], elements_, sum);
       PhotometerReading& reading = readings[one.alike[s].index];
-      reading = reading_of(setting, {sum}, {1.0});
-      EntranceModel& model = reading.entrance_model.emplace();
-      model.elements = one.lit_elements;
-      model.traced_elements = static_cast<std::size_t>(distinct);
-      model.path_rms_waves = error.path_rms_mm() / (1e-6 * model_.spectral[model_.nearest_wavelength()].wavelength_nm);
-      model.angle_rms_arcmin = 60.0 * Angle::from_rad(error.angle_rms_rad()).deg();
-      model.max_angle_arcmin = 60.0 * Angle::from_rad(error.max_angle_rad()).deg();
-      model.allowed_angle_arcmin = 60.0 * Angle::from_rad(allowed_rad).deg();
-      reading.lacks_diffraction = reading.lacks_diffraction || !(error.max_angle_rad() <= allowed_rad);
+      reading = photometer_.reading_of(setting, {sum}, {1.0});
+      reading.entrance_model = model;
+      reading.lacks_diffraction = reading.lacks_diffraction || !(error.max_angle_rad() <= allowed_rad());
     }
   }
   return readings;
+}
+
+Photometer::WavelengthReading Photometer::SurfaceMeasurement::sum_of_samples(const Direction& one,
+                                                                             std::size_t s) const {
+  const PhotometerSetting& setting = settings_[one.alike[s].index];
+  const auto estimate = [&](const auto& value) {
+    return sum_of(*one.sample, one.readings, [&](const ElementReading& r) { return value(r.pieces[s]); });
+  };
+  WavelengthReading sum;
+  for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
+    const SampledSum seen = estimate([k](const WavelengthReading& r) { return r.per_sr[k]; });
+    sum.per_sr.push_back(std::max(0.0, seen.value));
+    sum.error_per_sr.push_back(seen.std_error);
+    sum.missing_per_sr.push_back(estimate([k](const WavelengthReading& r) { return r.missing_per_sr[k]; }).value);
+  }
+  for (std::size_t bin = 0; bin < setting.map_columns * setting.map_columns; ++bin)
+    sum.map_per_sr.push_back(
+        std::max(0.0, estimate([bin](const WavelengthReading& r) { return r.map_per_sr[bin]; }).value));
+  const SampledSum rre = estimate([](const WavelengthReading& r) { return r.rre; });
+  sum.rre = rre.value;
+  sum.std_error = rre.std_error;
+  sum.truncated = std::max(0.0, estimate([](const WavelengthReading& r) { return r.truncated; }).value);
+  sum.beyond_budget = estimate([](const WavelengthReading& r) { return r.beyond_budget; }).value;
+  return sum;
+}
+
+EntranceModel Photometer::SurfaceMeasurement::entrance_model(const Direction& one,
+                                                             const raytrace::TangentError& error) const {
+  std::vector<std::size_t> traced;
+  for (const SampledElement& sampled : one.sample->samples()) traced.push_back(sampled.element);
+  std::sort(traced.begin(), traced.end());
+  const auto distinct = std::unique(traced.begin(), traced.end()) - traced.begin();
+  const design::OpticalModel& optics = photometer_.model_;
+  EntranceModel model;
+  model.elements = one.lit_elements;
+  model.traced_elements = static_cast<std::size_t>(distinct);
+  model.path_rms_waves = error.path_rms_mm() / (1e-6 * optics.spectral[optics.nearest_wavelength()].wavelength_nm);
+  model.angle_rms_arcmin = 60.0 * Angle::from_rad(error.angle_rms_rad()).deg();
+  model.max_angle_arcmin = 60.0 * Angle::from_rad(error.max_angle_rad()).deg();
+  model.allowed_angle_arcmin = 60.0 * Angle::from_rad(allowed_rad()).deg();
+  return model;
+}
+
+std::optional<std::vector<PhotometerReading>> Photometer::measure_behind_surface(
+    const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
+  SurfaceMeasurement measurement(*this, settings, cancel);
+  measurement.trace(progress);
+  return measurement.readings();
 }
 
 }  // namespace retrace::studies
