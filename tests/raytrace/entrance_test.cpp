@@ -20,6 +20,7 @@
 #include "raytrace/paths/path_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/entrance_surfaces.h"
+#include "tests/support/exit_recorder.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::front_test {
@@ -56,33 +57,16 @@ void expect_same(const ConeResult& a, const ConeResult& b, double tolerance) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(a.stokes.values()[k], b.stokes.values()[k], tolerance) << k;
 }
 
-/// Records the light that leaves through the entrance surface.
-struct Exits : ExitObserver {
-  struct Exit {
-    Vec3 position;
-    Vec3 direction;
-    double power;
-  };
-  std::vector<Exit> all;
-  void on_exit(const ExitEvent& departure) override {
-    if (departure.is_through_entrance())
-      all.push_back({departure.position, departure.direction, departure.light.power()});
-  }
-  const Exit& strongest() const {
-    return *std::max_element(all.begin(), all.end(), [](const Exit& a, const Exit& b) { return a.power < b.power; });
-  }
-};
-
 /// Traces single rays through a part with a curved entrance surface.
 struct OneRay {
   OneRay(const Part& part, const Entrance& front, const Vec2& centre)
       : part_(part), centre_(centre), back_(part, centre), face_(make_entrance_face(front, part, centre)) {}
 
   /// \param entry_mm entry point, relative to the center, in the plane that touches the entrance surface from above
-  Exits follow(const Optics& optics, const Illumination& light, const Vec2& entry_mm) const {
+  ExitRecorder follow(const Optics& optics, const Illumination& light, const Vec2& entry_mm) const {
     const PathSetup setup(part_, back_, centre_, optics, light, {0.5}, every_branch(1e-3), face_.get());
     Tally tally(1);
-    Exits exits;
+    ExitRecorder exits;
     PathWalker walker(setup, tally, &exits);
     walker.trace(entry_mm, {1, 2}, 0, 0);
     return exits;
@@ -190,7 +174,7 @@ TEST(Entrance, WedgeRefractsBothPolarisationsAsByHand) {
         };
         Illumination light = from(incidence);
         light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};  // first axis in the plane of incidence
-        const Exits::Exit exit = tracer.follow(mirrored_pmma(), light, {0.05, 0.1}).strongest();
+        const ExitRecorder::Exit exit = tracer.follow(mirrored_pmma(), light, {0.05, 0.1}).strongest();
         EXPECT_LT((exit.direction - d3).norm(), 1e-13) << slope << " " << incidence;
         EXPECT_NEAR(exit.power, transmitted(d0, d1) * transmitted(d2, d3), 1e-11) << slope << " " << incidence;
       }
@@ -255,7 +239,7 @@ TEST(Entrance, LayersOnALensActByTheLocalIncidence) {
           const double cos_out = hand.direction.dot(hand.at - centre) / radius;
           Illumination light = from(incidence);
           light.stokes = {1.0, s_polarised ? -1.0 : 1.0, 0.0, 0.0};
-          const Exits::Exit exit = tracer.follow(optics, light, {x, 0.0}).strongest();
+          const ExitRecorder::Exit exit = tracer.follow(optics, light, {x, 0.0}).strongest();
           // By reciprocity, the transmittance is the same in both directions.
           const double expected = through_layer(1.0, 1.3777, kPmma, layer, -d0.dot(normal), s_polarised) *
                                   through_layer(1.0, 1.3777, kPmma, layer, cos_out, s_polarised);
@@ -279,7 +263,7 @@ TEST(Entrance, LensOverAMirrorFollowsRaysByHand) {
         const Vec3 d0 = towards_part(incidence, 20.0);
         const ByHand hand = through_sphere(radius, thickness, kPmma, {entry.x(), entry.y(), thickness}, d0);
         if (std::abs(hand.at.x()) > 1.19 || std::abs(hand.at.y()) > 0.99) continue;  // leaves through a side
-        const Exits::Exit exit = tracer.follow(mirrored_pmma(), from(incidence, 20.0), entry).strongest();
+        const ExitRecorder::Exit exit = tracer.follow(mirrored_pmma(), from(incidence, 20.0), entry).strongest();
         EXPECT_LT((exit.direction - hand.direction).norm(), 1e-13) << incidence << " " << entry.transpose();
         EXPECT_LT((exit.position - hand.at).norm(), 1e-12) << incidence << " " << entry.transpose();
         ++compared;
@@ -300,7 +284,7 @@ TEST(Entrance, CatsEyeSendsLightBackInParallel) {
   const auto error = [&](double thickness, double height) {
     const Part plate = build_plate(size, 0.5 * thickness);
     const OneRay tracer(plate, sphere_entrance(radius, thickness, 0.5 * size), 0.5 * size);
-    const Exits::Exit exit = tracer.follow(mirrored_pmma(), from(0.0), {height, 0.0}).strongest();
+    const ExitRecorder::Exit exit = tracer.follow(mirrored_pmma(), from(0.0), {height, 0.0}).strongest();
     return exit.direction.x() / exit.direction.z();
   };
   const double at_tenth = error(focus, 0.1);
@@ -509,7 +493,7 @@ TEST(Entrance, DrawnPathsAreTracedPaths) {
     for (const Vec2& aside : {Vec2(0.11, 0.07), Vec2(-0.6, 0.35), Vec2(0.83, -0.58), Vec2(-0.05, -0.12)}) {
       const Illumination light = from(incidence_deg, 40.0);
       const LightPath path = strongest_path(part, first_hit, centre, ideal(), light, 0.5, centre + aside, &one.face());
-      const Exits exits = one.follow(ideal(), light, aside);
+      const ExitRecorder exits = one.follow(ideal(), light, aside);
       if (exits.all.empty()) continue;
       ++compared;
       ASSERT_EQ(exits.all.size(), 1U);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -18,6 +17,7 @@
 #include "raytrace/sampling/lit_region.h"
 #include "tests/support/designs.h"
 #include "tests/support/entrance_surfaces.h"
+#include "tests/support/exit_recorder.h"
 
 namespace retrace::testing::shells_test {
 namespace {
@@ -105,22 +105,6 @@ MonteCarloResult by_rays(const Part& part, const Optics& optics, const Illuminat
 void expect_same(const Ledger& a, const Ledger& b, double tolerance) {
   for (std::size_t k = 0; k < kAccountCount; ++k) EXPECT_NEAR(a.power[k], b.power[k], tolerance) << kAccountNames[k];
 }
-
-/// Records the light that leaves through the entrance face.
-struct Exits : ExitObserver {
-  struct Exit {
-    Vec3 position;
-    Vec3 direction;
-    double power;
-  };
-  std::vector<Exit> all;
-  void on_exit(const ExitEvent& event) override {
-    if (event.is_through_entrance()) all.push_back({event.position, event.direction, event.light.power()});
-  }
-  const Exit& strongest() const {
-    return *std::max_element(all.begin(), all.end(), [](const Exit& a, const Exit& b) { return a.power < b.power; });
-  }
-};
 
 const Part& cubes() {
   static const Part part = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0));
@@ -310,9 +294,9 @@ TEST(Shells, LensInFrontOfAMirrorFollowsRayMatrices) {
     ray.refract(kIndex, 1.0, -c1);
     const PathSetup setup(part, back, centre, optics, from(0.0), {0.5}, every_branch());
     Tally tally(1);
-    Exits exits;
+    ExitRecorder exits;
     PathWalker(setup, tally, &exits).trace({height, 0.0}, {1, 2}, 0, 0);
-    const Exits::Exit& exit = exits.strongest();
+    const ExitRecorder::Exit& exit = exits.strongest();
     EXPECT_NEAR(exit.direction.x() / exit.direction.z(), ray.angle, 1e-6 * std::abs(ray.angle))
         << outer << " " << inner;
     EXPECT_NEAR(exit.position.x(), ray.height, 1e-6 * height);
