@@ -325,6 +325,15 @@ TEST(Road, AreaOfASignLacksTheLineAndTheArrow) {
   EXPECT_NEAR(scene_of(request, {}).area(), triangle(0.0) - triangle(0.012) + triangle(0.03), 1e-12);
 }
 
+/// Returns the intensity in cd of the first reflector in the picture, divided by its projected area in m^2.
+double intensity_over_projected_area(const RoadScene& scene, const RoadView& view) {
+  const Vec3 way = scene.reflectors[0] - view.camera.eye;
+  double intensity_cd = 0.0;
+  for (std::size_t k = 0; k < view.picture.reflected.size(); ++k)
+    intensity_cd += view.picture.reflected[k] * view.camera.solid_angle(k) * way.squaredNorm();
+  return intensity_cd / (scene.area() * std::abs(way.z()) / way.norm());
+}
+
 /// The intensity of a sign in the picture is that of its retroreflective area, at distances at which the black line is
 /// wider and narrower than a pixel.
 TEST(Road, IntensityOfASignInThePictureIsThatOfItsArea) {
@@ -337,11 +346,7 @@ TEST(Road, IntensityOfASignInThePictureIsThatOfItsArea) {
     view.reflectors.resize(1);
     view.reflectors[0].luminance = 1.0;
     draw_road(scene, view);
-    const Vec3 way = scene.reflectors[0] - view.camera.eye;
-    double intensity_cd = 0.0;
-    for (std::size_t k = 0; k < view.picture.reflected.size(); ++k)
-      intensity_cd += view.picture.reflected[k] * view.camera.solid_angle(k) * way.squaredNorm();
-    EXPECT_NEAR(intensity_cd / (scene.area() * std::abs(way.z()) / way.norm()), 1.0, 3e-3) << distance_m;
+    EXPECT_NEAR(intensity_over_projected_area(scene, view), 1.0, 3e-3) << distance_m;
     EXPECT_EQ(*std::ranges::max_element(view.inset.reflected), 1.0) << "the inset shows the sign";
   }
 }
@@ -373,11 +378,7 @@ TEST(Road, NotchesReturnNoLight) {
   view.reflectors.resize(2);
   view.reflectors[0].luminance = 1.0;
   draw_road(scene, view);
-  const Vec3 way = scene.reflectors[0] - view.camera.eye;
-  double intensity_cd = 0.0;
-  for (std::size_t k = 0; k < view.picture.reflected.size(); ++k)
-    intensity_cd += view.picture.reflected[k] * view.camera.solid_angle(k) * way.squaredNorm();
-  EXPECT_NEAR(intensity_cd / (scene.area() * std::abs(way.z()) / way.norm()), 1.0, 3e-3);
+  EXPECT_NEAR(intensity_over_projected_area(scene, view), 1.0, 3e-3);
   request.mount = "sign";
   EXPECT_EQ(refusal_of([&] { scene_of(request, angle); }), "outline");
 }
