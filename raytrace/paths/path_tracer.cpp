@@ -369,16 +369,22 @@ bool PathWalker::meet_entrance(State& state) {
   return branch != Branch::transmitted;
 }
 
+/// Traces light from the entrance face through all shells, and records it if it passes them.
+/// \param record member function that records the light
+void PathWalker::record_beyond_shells(Record record, const State& state, const Light& light, const Vec3& direction) {
+  if (!setup_.optics.shells.empty()) {
+    const std::optional<State> outside = beyond_shells(state, light, direction);
+    if (outside) (this->*record)(*outside, outside->light, outside->direction);
+  } else {
+    (this->*record)(state, light, direction);
+  }
+}
+
 /// Records light that leaves through the entrance face.
 /// \param state position of the light on the face
 /// \param direction direction of the light in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
-  if (!setup_.optics.shells.empty()) {
-    const std::optional<State> outside = beyond_shells(state, light, direction);
-    if (outside) record_return(*outside, outside->light, outside->direction);
-  } else {
-    record_return(state, light, direction);
-  }
+  record_beyond_shells(&PathWalker::record_return, state, light, direction);
 }
 
 /// Records light that leaves through the entrance face and through all shells.
@@ -392,12 +398,7 @@ void PathWalker::record_return(const State& state, const Light& light, const Vec
 
 /// Records light that the entrance face reflects before the light enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
-  if (!setup_.optics.shells.empty()) {
-    const std::optional<State> outside = beyond_shells(state, light, direction);
-    if (outside) record_front_reflection(*outside, outside->light, outside->direction);
-  } else {
-    record_front_reflection(state, light, direction);
-  }
+  record_beyond_shells(&PathWalker::record_front_reflection, state, light, direction);
 }
 
 /// Records light that the entrance face has reflected and that has left through all shells.
