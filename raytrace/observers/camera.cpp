@@ -14,10 +14,10 @@
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/faces/entrance_face.h"
-#include "raytrace/light/exit_observer.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/observers/camera_rays.h"
 #include "raytrace/observers/pixel_guide.h"
+#include "raytrace/observers/sensor_accumulator.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
@@ -45,61 +45,6 @@ constexpr std::uint32_t kTrainingPass = 0xffffffff;
 // length of a tile in pixels and the maximum number of tiles along a side of the picture.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMaxTiles = 8;
-
-/// A path of the camera. It begins where a ray from the pupil meets the part.
-struct CameraSample {
-  Contact contact;
-  double luminance = 0.0;                              ///< luminance along the path, cd/m^2
-  double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight of the path in the mean of its pixel
-  double gain = 1.0;                                   ///< factor of the lamp's light, see ReturnCorrection
-  bool is_corrected = false;                           ///< true if ReturnCorrection applies to the path
-  bool shows_part() const { return contact.kind == Contact::Kind::face || contact.kind == Contact::Kind::side; }
-};
-
-/// Adds the luminance of the lamp and the surroundings to each path, in the direction in which the path leaves the
-/// part.
-class SensorAccumulator : public ExitObserver, public CellObserver {
- public:
-  /// On a film, the lamp is evaluated at the start of the path.
-  SensorAccumulator(const Luminaire& luminaire, const CameraScene& scene, std::vector<CameraSample>& paths)
-      : luminaire_(luminaire), scene_(scene), paths_(paths) {}
-
-  /// Selects the path to which the following events of PathWalker belong.
-  void begin(std::size_t path) { path_ = static_cast<std::uint32_t>(path); }
-  void on_exit(const ExitEvent& departure) override {
-    if (!departure.is_through_entrance()) return;
-    const double power = departure.light.power();
-    if (departure.is_front_reflection)
-      on_front_reflection(path_, departure.position, departure.direction, power);
-    else
-      on_exit(path_, departure.position, departure.direction, power);
-  }
-  void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
-    CameraSample& path = paths_[owner];
-    const Vec3& from = scene_.film ? path.contact.world : position;
-    const Vec3 towards = path.contact.world_from_local * direction;
-    const double lamp = path.is_corrected ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
-                                          : luminaire_.luminance(from, towards);
-    path.luminance += power * (scene_.surroundings.entrance_side + lamp);
-  }
-  /// Adds the luminance in the direction in which the entrance face reflects the path from outside.
-  /// \param from position in the camera frame
-  void on_front_reflection(std::uint32_t owner, const Vec3& from, const Vec3& direction, double power) {
-    CameraSample& path = paths_[owner];
-    path.luminance += power * scene_.surroundings.entrance_side;
-    if (scene_.has_front_reflection)
-      path.luminance += power * luminaire_.luminance(from, path.contact.world_from_local * direction);
-  }
-  void on_transmission(std::uint32_t owner, double power) override {
-    paths_[owner].luminance += scene_.surroundings.back_side * power;
-  }
-
- private:
-  const Luminaire& luminaire_;
-  const CameraScene& scene_;
-  std::vector<CameraSample>& paths_;
-  std::uint32_t path_ = 0;
-};
 
 Vec2 in_unit_disc(double u, double v) {
   const double r = std::sqrt(u);
