@@ -104,6 +104,63 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
 /// Number of cells of the grid along the longer side of a part with which its curved entrance face is drawn.
 constexpr int kEntranceCells = 220;
 
+/// Returns the lower borders of the sides of a part, as lines from vertex to vertex of its back surface. If the part
+/// has a plane back without such borders, the result is its outline on z = 0.
+std::vector<std::vector<Vec3>> lower_borders_of_sides(const Part& part) {
+  std::vector<std::vector<Vec3>> borders;
+  for (const geometry::Placement& placement : part.placements) {
+    const SurfacePatch& patch = part.patches[placement.patch];
+    const Vec3 shift(placement.offset_mm.x(), placement.offset_mm.y(), 0.0);
+    for (const std::vector<std::uint32_t>& rim : patch.border_rim) {
+      std::vector<Vec3>& border = borders.emplace_back();
+      for (const std::uint32_t k : rim) border.push_back(patch.vertices[k] + shift);
+    }
+  }
+  if (!borders.empty()) return borders;
+  std::vector<Vec3>& border = borders.emplace_back();
+  for (std::size_t k = 0; k <= part.outline.size(); ++k) {
+    const Vec2& p = part.outline[k % part.outline.size()];
+    border.emplace_back(p.x(), p.y(), 0.0);
+  }
+  return borders;
+}
+
+/// Returns true if a point is a corner of an outline at which the direction changes by more than 20 degrees.
+bool is_sharp_corner(const geometry::Polygon& outline, const Vec2& point) {
+  constexpr double kCosineOfLimit = 0.94;
+  const std::size_t count = outline.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec2 before = (outline[k] - outline[(k + count - 1) % count]).normalized();
+    const Vec2 after = outline[(k + 1) % count] - outline[k];
+    if ((outline[k] - point).norm() < 1e-6 * after.norm()) return before.dot(after.normalized()) < kCosineOfLimit;
+  }
+  return false;
+}
+
+/// Appends the side of a part above one line of its lower border. The side is divided into strips that are at most
+/// `cell_mm` wide.
+/// \param above function that returns the point of the entrance face above a point of the plan
+template <class Above>
+void add_side(DesignView& view, const Vec3& from, const Vec3& to, double cell_mm, const Above& above) {
+  const Vec3 along = to - from;
+  const int steps = std::max(1, static_cast<int>(std::ceil(along.head<2>().norm() / cell_mm)));
+  const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+  for (int s = 0; s <= steps; ++s) {
+    const Vec3 p = from + static_cast<double>(s) / steps * along;
+    view.mesh.vertices.push_back(p);
+    view.mesh.vertices.push_back(above(p.head<2>()));
+  }
+  for (int s = 0; s < steps; ++s) {
+    const std::uint32_t low = first + 2 * static_cast<std::uint32_t>(s);
+    for (const Triangle& t : {Triangle{low, low + 2, low + 3}, Triangle{low, low + 3, low + 1}}) {
+      view.mesh.triangles.push_back(t);
+      view.mesh.roles.push_back(FacetRole::side);
+    }
+    view.edges.push_back({low, low + 2});
+    view.edges.push_back({low + 1, low + 3});
+  }
+}
+
 /// Appends the sides of a part and its curved entrance face, which is sampled on a grid.
 void add_curved_entrance(DesignView& view, const Part& part, const EntranceHeights& height) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
@@ -126,27 +183,12 @@ void add_curved_entrance(DesignView& view, const Part& part, const EntranceHeigh
         view.mesh.roles.push_back(FacetRole::entrance);
       }
     }
-  for (std::size_t k = 0; k < part.outline.size(); ++k) {
-    const Vec2 from = part.outline[k];
-    const Vec2 along = part.outline[(k + 1) % part.outline.size()] - from;
-    const int steps = std::max(1, static_cast<int>(std::ceil(along.norm() / cell_mm)));
-    const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
-    for (int s = 0; s <= steps; ++s) {
-      const Vec2 p = from + static_cast<double>(s) / steps * along;
-      view.mesh.vertices.emplace_back(p.x(), p.y(), 0.0);
-      view.mesh.vertices.push_back(above(p));
+  for (const std::vector<Vec3>& border : lower_borders_of_sides(part))
+    for (std::size_t k = 0; k + 1 < border.size(); ++k) {
+      const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+      add_side(view, border[k], border[k + 1], cell_mm, above);
+      if (is_sharp_corner(part.outline, border[k].head<2>())) view.edges.push_back({first, first + 1});
     }
-    for (int s = 0; s < steps; ++s) {
-      const std::uint32_t low = first + 2 * static_cast<std::uint32_t>(s);
-      for (const Triangle& t : {Triangle{low, low + 2, low + 3}, Triangle{low, low + 3, low + 1}}) {
-        view.mesh.triangles.push_back(t);
-        view.mesh.roles.push_back(FacetRole::side);
-      }
-      view.edges.push_back({low, low + 2});
-      view.edges.push_back({low + 1, low + 3});
-    }
-    view.edges.push_back({first, first + 1});
-  }
   view.has_curved_entrance = true;
 }
 
