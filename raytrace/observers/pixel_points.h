@@ -20,8 +20,7 @@ struct PixelMoments {
 };
 
 /// Numbers of points per pixel and pass. In many pictures, most pixels are dark or uniform, and only a few of them are
-/// noisy. The noisy pixels then receive more points (Neyman allocation: the number of points is proportional to the
-/// standard deviation of a point).
+/// noisy. The noisy pixels then receive more points. The formula is derived in docs/theory/images.md.
 class PixelPoints {
  public:
   /// Every pixel has the same number of points.
