@@ -48,6 +48,10 @@ constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMaxTiles = 8;
 
+// Weight of the neighbours of a pixel in the estimate of its variance, in paths that show the lamp. A pixel in which
+// fewer paths show the lamp has an uncertain variance of its own.
+constexpr double kKnownHits = 4.0;
+
 Vec2 in_unit_disc(double u, double v) {
   const double r = std::sqrt(u);
   return {r * std::cos(2.0 * pi * v), r * std::sin(2.0 * pi * v)};
@@ -72,18 +76,28 @@ void CameraImage::add(const CameraPass& pass) {
 
 double CameraImage::std_error(std::size_t pixel) const {
   const double own = own_variance(pixel);
-  if (!(coverage[pixel] > 0.0) || paths[pixel] > passes * CameraTracer::kPointsPerPass) return std::sqrt(own);
+  if (!(coverage[pixel] > 0.0)) return std::sqrt(own);
   constexpr std::size_t kReach = 2;
   const std::size_t row = pixel / columns;
   const std::size_t column = pixel % columns;
   double sum = 0.0;
-  std::size_t count = 0;
+  double luminances = 0.0;
+  double count = 0.0;
   for (std::size_t r = row - std::min(row, kReach); r <= std::min(row + kReach, rows - 1); ++r)
     for (std::size_t c = column - std::min(column, kReach); c <= std::min(column + kReach, columns - 1); ++c) {
-      sum += own_variance(r * columns + c);
-      ++count;
+      const std::size_t at = r * columns + c;
+      sum += own_variance(at) * paths[at];
+      luminances += luminance[at];
+      count += 1.0;
     }
-  return std::sqrt(std::max(own, sum / static_cast<double>(count)));
+  const double of_path = sum / count;
+  const double mean = luminances / count;
+  const double n = paths[pixel];
+  if (n <= passes * CameraTracer::kPointsPerPass) return std::sqrt(std::max(own, of_path / n));
+  if (!(of_path > 0.0)) return std::sqrt(own);
+  // If each path shows either a bright lamp or darkness, this is the number of paths of which kKnownHits show the lamp.
+  const double known = kKnownHits * (1.0 + of_path / (mean * mean));
+  return std::sqrt((n * own + known * of_path / n) / (n + known));
 }
 
 double CameraImage::total_paths() const {

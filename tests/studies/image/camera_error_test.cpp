@@ -119,6 +119,7 @@ TEST(CameraError, IsRightForPixelsWithMorePaths) {
   std::size_t compared = 0;
   double sum = 0.0;
   for (std::size_t k = 0; k < kSide * kSide; ++k) {
+    if (std::ranges::all_of(images, [k](const CameraImage& image) { return image.luminance[k] == 0.0; })) continue;
     const double variance = z_variance(images, k);
     EXPECT_LT(variance, variance_bound(kSide * kSide)) << "column " << k % kSide << ", row " << k / kSide;
     const bool has_more = std::ranges::all_of(
