@@ -93,11 +93,15 @@ double CameraImage::std_error(std::size_t pixel) const {
   const double of_path = sum / count;
   const double mean = luminances / count;
   const double n = paths[pixel];
-  if (n <= passes * CameraTracer::kPointsPerPass) return std::sqrt(std::max(own, of_path / n));
+  if (!has_more_paths(pixel)) return std::sqrt(std::max(own, of_path / n));
   if (!(of_path > 0.0)) return std::sqrt(own);
   // If each path shows either a bright lamp or darkness, this is the number of paths of which kKnownHits show the lamp.
   const double known = kKnownHits * (1.0 + of_path / (mean * mean));
   return std::sqrt((n * own + known * of_path / n) / (n + known));
+}
+
+bool CameraImage::has_more_paths(std::size_t pixel) const {
+  return paths[pixel] > passes * CameraTracer::kPointsPerPass;
 }
 
 double CameraImage::total_paths() const {
@@ -125,7 +129,7 @@ double CameraImage::relative_noise() const {
   double sum = 0.0;
   for (std::size_t k = 0; k < luminance.size(); ++k) {
     if (coverage[k] < 1.0 - 1e-9) continue;
-    errors += std_error(k);
+    errors += has_more_paths(k) ? std::sqrt(own_variance(k)) : std_error(k);
     sum += luminance[k];
   }
   return sum > 0.0 ? errors / sum : 0.0;

@@ -109,10 +109,14 @@ struct CameraImage {
   /// Returns the mean luminance of the part; part_error() returns its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part.
+  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part. The errors
+  /// of pixels with more than the minimum number of paths are estimated only from their own passes. Including their
+  /// neighbours would overestimate the mean, because noisy pixels are often next to dark ones.
   double relative_noise() const;
 
  private:
+  /// Returns true if a pixel has more than the minimum number of paths.
+  bool has_more_paths(std::size_t pixel) const;
   /// Returns the squared standard error, estimated from the pixel's own passes.
   double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
 };
