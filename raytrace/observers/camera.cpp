@@ -490,8 +490,7 @@ void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block
 /// \param training receives training samples for the guide; may be null
 /// \param moments receives the luminances of all paths, indexed by pixel; may be null
 std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
-                                                    GuideTraining* training,
-                                                    std::vector<PixelMoments>* moments) const {
+                                                    GuideTraining* training, std::vector<PixelMoments>* moments) const {
   const std::size_t columns = scene.view.columns;
   const std::size_t pixels = columns * scene.view.rows;
   CameraPass result(3 * pixels + 1, 0.0);

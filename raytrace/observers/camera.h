@@ -99,10 +99,9 @@ struct CameraImage {
   void add(const CameraPass& pass);
   /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part and
   /// has the minimum number of paths, the variance is at least the mean variance of the 5 x 5 pixels around it. A pixel
-  /// without a sample of the rare bright paths would otherwise have a standard error that is too small. If the pixel has
-  /// more paths, the result follows from a weighted mean of these two variances. The weight of the pixel's own variance
-  /// increases with the number of its paths.
-  /// \pre passes > 1
+  /// without a sample of the rare bright paths would otherwise have a standard error that is too small. If the pixel
+  /// has more paths, the result follows from a weighted mean of these two variances. The weight of the pixel's own
+  /// variance increases with the number of its paths. \pre passes > 1
   double std_error(std::size_t pixel) const;
   /// Returns the number of paths through all pixels.
   double total_paths() const;
