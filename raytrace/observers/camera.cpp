@@ -17,6 +17,7 @@
 #include "raytrace/light/ledger.h"
 #include "raytrace/observers/camera_rays.h"
 #include "raytrace/observers/pixel_guide.h"
+#include "raytrace/observers/pixel_points.h"
 #include "raytrace/observers/sensor_accumulator.h"
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
@@ -38,13 +39,18 @@ constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
 // Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Number of the training pass of a PixelGuide. A pass traces kPointsPerPass paths through every pixel. The passes of a
-// picture have smaller numbers.
+// Number of the training pass of a PixelGuide. The training passes of PixelPoints have the numbers below it, and the
+// passes of a picture have still smaller numbers.
 constexpr std::uint32_t kTrainingPass = 0xffffffff;
+constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
 // length of a tile in pixels and the maximum number of tiles along a side of the picture.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMaxTiles = 8;
+
+// Weight of the neighbours of a pixel in the estimate of its variance, in paths that show the lamp. A pixel in which
+// fewer paths show the lamp has an uncertain variance of its own.
+constexpr double kKnownHits = 4.0;
 
 Vec2 in_unit_disc(double u, double v) {
   const double r = std::sqrt(u);
@@ -56,13 +62,13 @@ Vec2 in_unit_disc(double u, double v) {
 void CameraImage::add(const CameraPass& pass) {
   const std::size_t pixels = luminance.size();
   ++passes;
-  paths += pixels * CameraTracer::kPointsPerPass;
   double part_pixels = 0.0;
   for (std::size_t k = 0; k < pixels; ++k) {
     const double off = pass[k] - luminance[k];
     luminance[k] += off / passes;
     squares[k] += off * (pass[k] - luminance[k]);
     coverage[k] += (pass[pixels + k] - coverage[k]) / passes;
+    paths[k] += pass[2 * pixels + k];
     part_pixels += pass[pixels + k];
   }
   if (part_pixels > 0.0) part_means.push_back(pass.back() / part_pixels);
@@ -75,13 +81,33 @@ double CameraImage::std_error(std::size_t pixel) const {
   const std::size_t row = pixel / columns;
   const std::size_t column = pixel % columns;
   double sum = 0.0;
-  std::size_t count = 0;
+  double luminances = 0.0;
+  double count = 0.0;
   for (std::size_t r = row - std::min(row, kReach); r <= std::min(row + kReach, rows - 1); ++r)
     for (std::size_t c = column - std::min(column, kReach); c <= std::min(column + kReach, columns - 1); ++c) {
-      sum += own_variance(r * columns + c);
-      ++count;
+      const std::size_t at = r * columns + c;
+      sum += own_variance(at) * paths[at];
+      luminances += luminance[at];
+      count += 1.0;
     }
-  return std::sqrt(std::max(own, sum / static_cast<double>(count)));
+  const double of_path = sum / count;
+  const double mean = luminances / count;
+  const double n = paths[pixel];
+  if (!has_more_paths(pixel)) return std::sqrt(std::max(own, of_path / n));
+  if (!(of_path > 0.0)) return std::sqrt(own);
+  // If each path shows either a bright lamp or darkness, this is the number of paths of which kKnownHits show the lamp.
+  const double known = kKnownHits * (1.0 + of_path / (mean * mean));
+  return std::sqrt((n * own + known * of_path / n) / (n + known));
+}
+
+bool CameraImage::has_more_paths(std::size_t pixel) const {
+  return paths[pixel] > passes * CameraTracer::kPointsPerPass;
+}
+
+double CameraImage::total_paths() const {
+  double sum = 0.0;
+  for (const double count : paths) sum += count;
+  return sum;
 }
 
 double CameraImage::part_mean() const {
@@ -103,7 +129,7 @@ double CameraImage::relative_noise() const {
   double sum = 0.0;
   for (std::size_t k = 0; k < luminance.size(); ++k) {
     if (coverage[k] < 1.0 - 1e-9) continue;
-    errors += std_error(k);
+    errors += has_more_paths(k) ? std::sqrt(own_variance(k)) : std_error(k);
     sum += luminance[k];
   }
   return sum > 0.0 ? errors / sum : 0.0;
@@ -122,7 +148,8 @@ struct CameraTracer::Impl {
         lens(s.view),
         luminaire(s.lamp, s.view, s.discs),
         entrance_mm(EntranceSampler(p).bounding_box()),
-        tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMaxTiles)) {
+        tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMaxTiles)),
+        points(s.view.columns * s.view.rows, kPointsPerPass) {
     if (curved != nullptr)
       entrance_face = make_entrance_face(*curved, p, centre_mm);
     else if (engine == CameraEngine::fastest)
@@ -152,7 +179,7 @@ struct CameraTracer::Impl {
   void add_path(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
                 Block& block) const;
   void add_paths(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
-  std::array<PixelGuide::Point, kPointsPerPass> points_of(std::uint32_t pixel, std::uint32_t pass) const;
+  std::vector<PixelGuide::Point> points_of(std::uint32_t pixel, std::uint32_t pass) const;
   std::optional<PixelProjection> projection_of(std::uint32_t pixel) const;
   std::uint32_t tile_of(std::size_t pixel) const {
     const std::size_t row = pixel / scene.view.columns * tiles_along / scene.view.rows;
@@ -161,8 +188,9 @@ struct CameraTracer::Impl {
   }
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
   struct GuideTraining;
-  std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel,
-                                  GuideTraining* training = nullptr) const;
+  std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel, GuideTraining* training = nullptr,
+                                  std::vector<PixelMoments>* moments = nullptr) const;
+  bool choose_points(const Cancellation* cancel);
   std::optional<CameraPass> trace_and_learn(std::uint32_t pass, const Cancellation* cancel);
   void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
@@ -185,6 +213,8 @@ struct CameraTracer::Impl {
   bool has_learnt_all = false;      ///< true if the guide has been trained with the training pass and with pass 0
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
   std::vector<float> levels;        ///< indexed by pixel: typical luminance, see GuideTraining::level_of()
+  PixelPoints points;               ///< numbers of points per pass
+  bool has_chosen_points = false;   ///< true if `points` were chosen by training passes
 };
 
 /// Training samples for a PixelGuide, collected during one pass.
@@ -324,7 +354,7 @@ struct CameraTracer::Impl::Block {
   /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
-  std::vector<CameraSample> paths;  ///< kPointsPerPass per pixel
+  std::vector<CameraSample> paths;  ///< as many per pixel as Impl::points contains
   Tally tally{1};
   SensorAccumulator accumulator;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
@@ -396,45 +426,47 @@ std::optional<PixelProjection> CameraTracer::Impl::projection_of(std::uint32_t p
 }
 
 /// Returns the points of a pixel at which the paths of a pass start.
-std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Impl::points_of(std::uint32_t pixel,
-                                                                                          std::uint32_t pass) const {
+std::vector<PixelGuide::Point> CameraTracer::Impl::points_of(std::uint32_t pixel, std::uint32_t pass) const {
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
-    auto points = guide->points(*projection_of(pixel), {words[0], words[1], words[2], words[3]});
+    const auto chosen = guide->points(*projection_of(pixel), {words[0], words[1], words[2], words[3]});
+    std::vector<PixelGuide::Point> at(chosen.begin(), chosen.end());
     // The index of a point determines its wavelength. The points are rotated by a random number of indices, so that
     // every wavelength receives points that the guide has selected.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
-    std::rotate(points.begin(), points.begin() + turn, points.end());
-    return points;
+    std::rotate(at.begin(), at.begin() + turn, at.end());
+    return at;
   }
   const auto words = philox({seed, kCameraScrambleStream}, pass, pixel);
   const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
-  std::array<PixelGuide::Point, kPointsPerPass> points;
-  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
+  std::vector<PixelGuide::Point> at(points[pixel]);
+  for (std::uint32_t k = 0; k < at.size(); ++k) {
     const auto [x, y] = square(k);
-    points[k].within = {x, y};
+    at[k].within = {x, y};
+    at[k].weight = 1.0 / points[pixel];
   }
-  return points;
+  return at;
 }
 
 /// Starts the paths of one pixel in a pass.
 void CameraTracer::Impl::add_paths(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
-  const auto points = points_of(pixel, pass);
-  for (std::uint32_t k = 0; k < kPointsPerPass; ++k) {
-    const std::uint32_t point = pass * kPointsPerPass + k;
+  const auto at = points_of(pixel, pass);
+  const auto count = static_cast<std::uint32_t>(at.size());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t point = pass * count + k;
     const auto random = philox({seed, kLensStream}, point, pixel);
     // The points of a pass are distributed over the wavelengths by stratified sampling.
-    const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / kPointsPerPass;
+    const double chosen = (static_cast<double>(k) + unit_interval(random[0])) / count;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, chosen * cumulative.back());
     const auto wavelength = static_cast<std::size_t>(found - cumulative.begin());
     const Vec2 pupil = scene.discs == DiscAverage::sampled
                            ? in_unit_disc(unit_interval(random[1]), unit_interval(random[2]))
                            : Vec2(Vec2::Zero());
     const std::size_t number = block.paths.size();
-    add_path(lens.ray(corner + points[k].within, pupil), wavelength, pixel, point, block);
-    block.paths[number].weight = points[k].weight;
+    add_path(lens.ray(corner + at[k].within, pupil), wavelength, pixel, point, block);
+    block.paths[number].weight = at[k].weight;
   }
 }
 
@@ -456,11 +488,13 @@ void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block
 
 /// Traces one pass over the picture.
 /// \param training receives training samples for the guide; may be null
+/// \param moments receives the luminances of all paths, indexed by pixel; may be null
 std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
-                                                    GuideTraining* training) const {
+                                                    GuideTraining* training, std::vector<PixelMoments>* moments) const {
   const std::size_t columns = scene.view.columns;
   const std::size_t pixels = columns * scene.view.rows;
-  CameraPass result(2 * pixels + 1, 0.0);
+  CameraPass result(3 * pixels + 1, 0.0);
+  for (std::size_t k = 0; k < pixels; ++k) result[2 * pixels + k] = points[k];
   std::vector<double> on_part(pixels, 0.0);
   const std::size_t rows = rows_of_block();
   std::vector<double> lost((scene.view.rows + rows - 1) / rows, 0.0);
@@ -479,17 +513,21 @@ std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const 
       add_paths(static_cast<std::uint32_t>(pixel), number, block);
     }
     if (cells) follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
-    for (std::size_t k = 0; k < block.paths.size(); ++k) {
-      const CameraSample& path = block.paths[k];
-      const std::size_t pixel = first + k / kPointsPerPass;
+    std::size_t next = 0;
+    for (std::size_t pixel = first; pixel < last; ++pixel) {
       // The weights of a pixel's points add up to 1 only on average. The weights are therefore applied to the
       // difference from the typical luminance of the pixel, so that deviations of their sum from 1 cause little noise.
       const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
-      const double luminance = level / kPointsPerPass + path.weight * (path.luminance - level);
-      result[pixel] += luminance;
-      if (!path.shows_part()) continue;
-      on_part[pixel] += luminance;
-      result[pixels + pixel] += 1.0 / kPointsPerPass;
+      const std::uint32_t count = points[pixel];
+      for (std::uint32_t k = 0; k < count; ++k) {
+        const CameraSample& path = block.paths[next++];
+        const double luminance = level / count + path.weight * (path.luminance - level);
+        result[pixel] += luminance;
+        if (moments != nullptr) (*moments)[pixel].add(path.luminance);
+        if (!path.shows_part()) continue;
+        on_part[pixel] += luminance;
+        result[pixels + pixel] += 1.0 / count;
+      }
     }
     if (training != nullptr) training->append(block.paths, first, training->samples[block_number]);
     lost[block_number] = block.tally.other[Account::lost];
@@ -497,7 +535,7 @@ std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const 
   if (is_cancelled(cancel)) return std::nullopt;
   double lost_power = 0.0;
   for (const double power : lost) lost_power += power;
-  if (lost_power > kLostLimit * static_cast<double>(pixels * kPointsPerPass))
+  if (lost_power > kLostLimit * static_cast<double>(points.total()))
     throw BudgetError(
         "rays missed every face from inside the part: this is a defect of retrace, please report the "
         "design");
@@ -528,6 +566,16 @@ std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t numb
   return result;
 }
 
+/// Traces training passes and chooses the numbers of points by their noise. Returns false if tracing was cancelled.
+bool CameraTracer::Impl::choose_points(const Cancellation* cancel) {
+  std::vector<PixelMoments> moments(scene.view.columns * scene.view.rows);
+  for (std::uint32_t k = 1; k <= kTrainingPassesOfPoints; ++k)
+    if (!trace(kTrainingPass - k, cancel, nullptr, &moments)) return false;
+  points = PixelPoints(moments, kTrainingPassesOfPoints * kPointsPerPass, scene.view.columns, kPointsPerPass);
+  has_chosen_points = true;
+  return true;
+}
+
 CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light,
                            const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed, CameraEngine engine,
                            const geometry::Entrance* entrance_face)
@@ -545,12 +593,16 @@ CameraImage CameraTracer::empty_image() const {
   image.luminance.assign(image.columns * image.rows, 0.0);
   image.squares = image.luminance;
   image.coverage = image.luminance;
+  image.paths = image.luminance;
   return image;
 }
 
 std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancellation* cancel) const {
   Impl& h = *impl_;
-  if (!h.cells) return h.trace(number, cancel);
+  if (!h.cells) {
+    if (!h.has_chosen_points && !h.choose_points(cancel)) return std::nullopt;
+    return h.trace(number, cancel);
+  }
   if (number == 0 && h.has_learnt_all) {
     h.guide.reset();
     h.levels.clear();

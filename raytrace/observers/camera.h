@@ -79,9 +79,9 @@ struct WeightedOptics {
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// Result of one pass over a picture. It first contains the luminance (cd/m^2) of each pixel, row by row from the top,
-/// and then the fraction of each pixel that shows the part. The last element is the sum over all pixels of the
-/// luminance that comes from paths through the part.
+/// Result of one pass over a picture. It contains three values per pixel, row by row from the top: first the luminances
+/// of all pixels (cd/m^2), then the fractions of the pixels that show the part, then the numbers of paths. The last
+/// element is the sum over all pixels of the luminance that comes from paths through the part.
 using CameraPass = std::vector<double>;
 
 /// A picture that becomes more accurate with each pass. The passes are independent of each other.
@@ -92,23 +92,30 @@ struct CameraImage {
   std::vector<double> luminance;   ///< mean over the passes, cd/m^2, row by row from the top
   std::vector<double> squares;     ///< sum of squared deviations from `luminance`
   std::vector<double> coverage;    ///< fraction of each pixel that shows the part
+  std::vector<double> paths;       ///< number of paths through each pixel
   std::vector<double> part_means;  ///< per pass: mean luminance of the part; empty if the picture does not show it
-  std::uint64_t paths = 0;
 
   /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
   /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part and
-  /// the mean variance of the 5 x 5 pixels around it is larger, this variance is used. A pixel without a sample of the
-  /// rare bright paths would otherwise have a standard error that is too small.
-  /// \pre passes > 1
+  /// has the minimum number of paths, the variance is at least the mean variance of the 5 x 5 pixels around it. A pixel
+  /// without a sample of the rare bright paths would otherwise have a standard error that is too small. If the pixel
+  /// has more paths, the result follows from a weighted mean of these two variances. The weight of the pixel's own
+  /// variance increases with the number of its paths. \pre passes > 1
   double std_error(std::size_t pixel) const;
+  /// Returns the number of paths through all pixels.
+  double total_paths() const;
   /// Returns the mean luminance of the part; part_error() returns its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part.
+  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part. The errors
+  /// of pixels with more than the minimum number of paths are estimated only from their own passes. Including their
+  /// neighbours would overestimate the mean, because noisy pixels are often next to dark ones.
   double relative_noise() const;
 
  private:
+  /// Returns true if a pixel has more than the minimum number of paths.
+  bool has_more_paths(std::size_t pixel) const;
   /// Returns the squared standard error, estimated from the pixel's own passes.
   double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
 };
@@ -127,7 +134,7 @@ enum class CameraEngine { fastest, embree };
 /// directions (docs/theory/images.md).
 class CameraTracer {
  public:
-  /// Number of points per pixel and pass. The points are evenly distributed.
+  /// Minimum number of points per pixel and pass. The points of a pixel are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
   /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face. Parts with
@@ -146,7 +153,8 @@ class CameraTracer {
   /// depends only on the seed, the scene and the number of the pass.
   ///
   /// With the cell engine, a PixelGuide selects half of the points of a pixel if this reduces the noise. The first call
-  /// trains the guide with pass 0 and with a training pass that is not part of the picture.
+  /// trains the guide with pass 0 and with a training pass that is not part of the picture. With Embree, noisy pixels
+  /// have more points (PixelPoints). Their numbers follow from two training passes that are not part of the picture.
   /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;

@@ -1,5 +1,4 @@
 // Paths at a curved entrance face. These member functions of PathWalker are not used for plane entrance faces.
-#include <algorithm>
 #include <limits>
 
 #include "raytrace/paths/path_tracer.h"
@@ -32,15 +31,13 @@ double PathWalker::reach_entrance_face(const State& state, double limit, Step& s
 /// Traces a path in the air above the curved entrance face. It enters the part again or leaves. The outline of the part
 /// is convex, so that light that leaves the space above it does not come back.
 bool PathWalker::advance_above(State& state) {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const PathSetup::Side& side : setup_.sides) {
-    const double towards = side.normal.dot(state.direction);
-    if (towards <= 0.0) continue;
-    limit = std::min(limit, std::max(0.0, (side.offset_mm - side.normal.dot(state.position)) / towards));
-  }
-  const auto met =
-      setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, false, limit});
+  const auto met = setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, false,
+                                                    std::numeric_limits<double>::infinity()});
   if (!met) return leave_entrance_face(state);
+  if (!setup_.is_far_from_sides(state.position + met->hit.t * state.direction)) {
+    Step unused;
+    if (reach_side(state, met->hit.t, unused) < met->hit.t) return leave_entrance_face(state);
+  }
   state.position += met->hit.t * state.direction;
   return meet_entrance_face(state, met->hit, met->normal);
 }

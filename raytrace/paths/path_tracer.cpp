@@ -46,6 +46,13 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     // their periods.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
+  if (!sides.empty()) {
+    inner_half_mm = 0.5 * geometry::bounding_box(part.outline).size();
+    double scale = 1.0;
+    for (const Side& side : sides)
+      scale = std::min(scale, side.offset_mm / side.normal.head<2>().cwiseAbs().dot(inner_half_mm));
+    inner_half_mm *= std::max(0.0, scale * (1.0 - 1e-9));
+  }
   if (how.entrance.scatters()) contaminated_entrance.emplace(how);
   if (!how.shells.empty()) middle_height_mm = curved != nullptr ? curved->middle_height_mm() : thickness_mm;
   if (deflect(how.shells))
@@ -175,7 +182,9 @@ std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const
       {state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
-/// Finds the next face inside a finite part: the nearest of the entrance, the sides and the back surface.
+/// Finds the next face inside a finite part: the nearest of the entrance, the back surface and the sides. A curved
+/// entrance face is searched after the back surface, and the sides are searched last, because most paths meet a nearer
+/// face first.
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
   double limit = kInfinity;
@@ -183,6 +192,47 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     limit = (setup_.thickness_mm - state.position.z()) / state.direction.z();
     step.end = End::entrance;
   }
+  // Above the height `clearance_mm`, only descending rays can meet the back surface. The search starts at this height.
+  double skipped = 0.0;
+  SurfaceRay ray{state.position, state.direction, state.source, true, limit};
+  if (state.position.z() > setup_.clearance_mm) {
+    skipped = state.direction.z() < 0.0 ? (state.position.z() - setup_.clearance_mm) / -state.direction.z() : kInfinity;
+    if (skipped < limit) {
+      ray.origin += skipped * state.direction;
+      ray.source = {};
+    }
+  }
+  const auto take_facet = [&](const std::optional<SurfaceHit>& hit) {
+    step.end = hit ? End::facet : End::miss;
+    if (!hit) return;
+    step.hit = *hit;
+    limit = skipped + hit->t;
+  };
+  if (skipped < limit) {
+    ray.t_max = limit - skipped;
+    if (const auto hit = setup_.surface.first_hit(ray)) take_facet(hit);
+  }
+  if (setup_.entrance_face != nullptr) limit = reach_entrance_face(state, limit, step);
+  if (!setup_.is_far_from_sides(state.position + limit * state.direction)) limit = reach_side(state, limit, step);
+  if (step.end != End::facet && skipped < limit) {
+    const double end_z = ray.origin.z() + (limit - skipped) * state.direction.z();
+    ray.t_max = kInfinity;
+    if (step.end == End::miss || end_z < setup_.below_surface_mm())
+      take_facet(setup_.surface.first_hit_with_tolerance(ray));
+  }
+  if (skipped < limit) {
+    state.position = ray.origin;
+    state.source = ray.source;
+  } else {
+    skipped = 0.0;
+  }
+  if (step.end != End::miss) state.position += (limit - skipped) * state.direction;
+  step.length_mm = limit;
+  return step;
+}
+
+/// Returns the distance to the first side of a finite part, or `limit` if the path does not meet a side before.
+double PathWalker::reach_side(const State& state, double limit, Step& step) const {
   for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
     const double towards = setup_.sides[k].normal.dot(state.direction);
     if (towards <= 0.0) continue;
@@ -192,34 +242,7 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
     step.end = End::side;
     step.side = k;
   }
-  if (setup_.entrance_face != nullptr) limit = reach_entrance_face(state, limit, step);
-  // Above the height `clearance_mm`, only descending rays can meet the back surface. The search starts at this height.
-  double skipped = 0.0;
-  if (state.position.z() > setup_.clearance_mm) {
-    skipped = state.direction.z() < 0.0 ? (state.position.z() - setup_.clearance_mm) / -state.direction.z() : kInfinity;
-    if (skipped < limit) {
-      state.position += skipped * state.direction;
-      state.source = {};
-    }
-  }
-  if (skipped < limit) {
-    auto hit = search(state, limit - skipped);
-    const double end_z = state.position.z() + (limit - skipped) * state.direction.z();
-    if (!hit && (step.end == End::miss || end_z < setup_.below_surface_mm())) {
-      step.end = End::miss;
-      hit = search_certainly(state);
-    }
-    if (hit) {
-      step.end = End::facet;
-      step.hit = *hit;
-      limit = skipped + hit->t;
-    }
-  } else {
-    skipped = 0.0;
-  }
-  if (step.end != End::miss) state.position += (limit - skipped) * state.direction;
-  step.length_mm = limit;
-  return step;
+  return limit;
 }
 
 /// Finds the next face inside an infinite part. Positions are moved into the central period, so that only the surface

@@ -3,6 +3,7 @@
 // Traces a single light path through any part: finds the next face, splits the light by refraction and reflection, and
 // adds the power to the accounts of the ledger.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -35,6 +36,8 @@ struct PathSetup : LightSetup {
   Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
   double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
   Vec2 period_mm = Vec2::Zero();     ///< period of an infinite part
+  /// Half size of a rectangle around the origin that is inside all sides of a finite part.
+  Vec2 inner_half_mm = Vec2::Zero();
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
   /// Convex polygons of the entrance face of a part with notches or holes, see Part::entrance_pieces.
   std::vector<geometry::Polygon> entrance_pieces;
@@ -43,6 +46,11 @@ struct PathSetup : LightSetup {
   /// pass between two facets.
   double below_surface_mm() const {
     return -depth_mm - (entrance_pieces.empty() ? clearance_mm : clearance_mm - top_mm);
+  }
+  /// Returns true if a position of a finite part is inside all sides, with a margin. A segment between two points that
+  /// are inside does not meet a side.
+  bool is_far_from_sides(const Vec3& position_mm) const {
+    return std::abs(position_mm.x()) < inner_half_mm.x() && std::abs(position_mm.y()) < inner_half_mm.y();
   }
   /// Returns true if a position is inside one of `entrance_pieces`.
   /// \param min_distance_mm minimum distance from the sides of the polygon; with a negative value, the position may be
@@ -115,6 +123,7 @@ class PathWalker {
   bool advance(State& state);
 
   Step step_inside(State& state) const;
+  double reach_side(const State& state, double limit, Step& step) const;
   Step step_inside_periodic(State& state) const;
   Step step_outside(State& state) const;
   Step step_outside_periodic(State& state) const;

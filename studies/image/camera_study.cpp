@@ -117,8 +117,11 @@ struct CameraStudy::Tracers {
       if (layers.size() > responses) {
         const std::optional<raytrace::CameraPass> more = layers[responses + k]->pass(number, cancel);
         if (!more) return std::nullopt;
-        const std::size_t pixels = sum->size() / 2;
-        for (std::size_t pixel = 0; pixel < pixels; ++pixel) (*sum)[pixel] += (*more)[pixel];
+        const std::size_t pixels = sum->size() / 3;
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+          (*sum)[pixel] += (*more)[pixel];
+          (*sum)[2 * pixels + pixel] += (*more)[2 * pixels + pixel];
+        }
         sum->back() += more->back();
       }
       all.insert(all.end(), sum->begin(), sum->end());
@@ -356,9 +359,8 @@ std::optional<std::string> CameraStudy::run_to_bytes(const Cancellation* cancel)
                              numbers.is_by_cells ? 1.0 : 0.0,
                              numbers.elapsed_s};
   for (const raytrace::CameraImage& image : numbers.images) {
-    all.insert(all.end(), {static_cast<double>(image.passes), static_cast<double>(image.paths),
-                           static_cast<double>(image.part_means.size())});
-    for (const auto* values : {&image.part_means, &image.luminance, &image.squares, &image.coverage})
+    all.insert(all.end(), {static_cast<double>(image.passes), static_cast<double>(image.part_means.size())});
+    for (const auto* values : {&image.part_means, &image.luminance, &image.squares, &image.coverage, &image.paths})
       all.insert(all.end(), values->begin(), values->end());
   }
   return bytes_of(all);
@@ -384,14 +386,13 @@ CameraResult CameraStudy::result_of(const std::string& bytes) const {
     image.columns = request_.columns;
     image.rows = request_.rows;
     image.passes = static_cast<std::uint32_t>(next());
-    image.paths = static_cast<std::uint64_t>(next());
     const auto means = static_cast<std::size_t>(next());
     const auto take = [&](std::vector<double>& values, std::size_t count) {
       values.assign(at, at + static_cast<std::ptrdiff_t>(count));
       at += static_cast<std::ptrdiff_t>(count);
     };
     take(image.part_means, means);
-    for (auto* values : {&image.luminance, &image.squares, &image.coverage}) take(*values, pixels);
+    for (auto* values : {&image.luminance, &image.squares, &image.coverage, &image.paths}) take(*values, pixels);
     numbers.images.push_back(std::move(image));
   }
   return result_with(numbers);

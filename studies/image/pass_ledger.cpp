@@ -27,7 +27,7 @@ PassLedger::PassLedger(const CameraRequest& request, std::vector<raytrace::Camer
       progress_(progress),
       after_pass_(after_pass),
       goal_(request.passes.value_or(CameraStudy::kMaxPasses)),
-      max_ahead_(std::max(kFewestAhead, kBytesAhead / (images.size() * image_.luminance.size() * 2 * sizeof(double)))) {
+      max_ahead_(std::max(kFewestAhead, kBytesAhead / (images.size() * image_.luminance.size() * 3 * sizeof(double)))) {
 }
 
 std::optional<std::uint64_t> PassLedger::take() {

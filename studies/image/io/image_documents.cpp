@@ -111,7 +111,7 @@ Json camera_content(const CameraResult& result) {
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
   }
   json["passes"] = result.image.passes;
-  json["paths"] = result.image.paths;
+  json["paths"] = static_cast<std::uint64_t>(result.image.total_paths());
   if (result.image.passes > 1) {
     if (result.image.part_means.size() > 1) {
       json["part_luminance_cd_per_m2"] = result.image.part_mean();

@@ -3,6 +3,7 @@ retrace_test(raytrace_tests
           ${CMAKE_CURRENT_LIST_DIR}/element_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/error_free_exit_test.cpp ${CMAKE_CURRENT_LIST_DIR}/formed_aperture_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/mesh_far_field_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/photometric_geometry_test.cpp ${CMAKE_CURRENT_LIST_DIR}/pixel_guide_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/pixel_points_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/scattered_field_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/scattered_limits_test.cpp
   LIBRARIES retrace::raytrace retrace::texture retrace::geometry_io rapidcheck)

@@ -1,6 +1,7 @@
 // Tests of the standard errors of single pixels, at borders and where paths to bright light are rare.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <vector>
@@ -37,10 +38,11 @@ CameraScene border_scene(const Part& part) {
   return scene;
 }
 
-std::vector<CameraImage> pictures_of(const Part& part, const CameraScene& scene, std::uint32_t passes) {
+std::vector<CameraImage> pictures_of(const Part& part, const CameraScene& scene, std::uint32_t passes,
+                                     CameraEngine engine = CameraEngine::fastest) {
   std::vector<CameraImage> images;
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-    const CameraTracer tracer(part, {{pmma(), 1.0}}, scene, kCameraPolicy, 100 + seed);
+    const CameraTracer tracer(part, {{pmma(), 1.0}}, scene, kCameraPolicy, 100 + seed, engine);
     CameraImage image = tracer.empty_image();
     while (image.passes < passes) EXPECT_TRUE(tracer.add_pass(image));
     images.push_back(std::move(image));
@@ -103,6 +105,34 @@ TEST(CameraError, IsRightWithinAnArray) {
   // large on average.
   EXPECT_GT(sum, 0.8);
   EXPECT_LT(sum, 1.1);
+}
+
+/// In a picture of which most pixels are dark, noisy pixels have more paths than the others. The reported errors of
+/// these pixels are correct on average, and none of them is too small.
+TEST(CameraError, IsRightForPixelsWithMorePaths) {
+  const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
+  CameraScene scene = border_scene(part);
+  scene.view.width_mm = 25.0;
+  scene.surroundings = {};
+  constexpr std::uint32_t kPasses = 32;
+  const std::vector<CameraImage> images = pictures_of(part, scene, kPasses, CameraEngine::embree);
+  std::size_t compared = 0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kSide * kSide; ++k) {
+    if (std::ranges::all_of(images, [k](const CameraImage& image) { return image.luminance[k] == 0.0; })) continue;
+    const double variance = z_variance(images, k);
+    EXPECT_LT(variance, variance_bound(kSide * kSide)) << "column " << k % kSide << ", row " << k / kSide;
+    const bool has_more = std::ranges::all_of(
+        images, [k](const CameraImage& image) { return image.paths[k] > 4 * kPasses && image.std_error(k) > 0.0; });
+    if (!has_more) continue;
+    ++compared;
+    sum += variance;
+  }
+  ASSERT_GT(compared, 5U);
+  // With 32 passes, the mean of 1 / s^2 of normally distributed values is 31 / 29 of 1 / sigma^2.
+  const double expected = (kPasses - 1.0) / (kPasses - 3.0);
+  const double error = expected * std::sqrt(2.0 / (kSeeds - 1.0) / static_cast<double>(compared));
+  EXPECT_NEAR(sum / static_cast<double>(compared), expected, 4.0 * error);
 }
 
 /// A pixel that does not show the part has the standard error 0, even if its neighbours show the part.

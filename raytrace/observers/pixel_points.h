@@ -1,0 +1,47 @@
+#pragma once
+
+// Number of paths that a camera traces through each pixel.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace retrace::raytrace {
+
+/// Sum and sum of squares of the luminances of paths through a pixel, in cd/m^2.
+struct PixelMoments {
+  double sum = 0.0;
+  double squares = 0.0;
+
+  void add(double luminance) {
+    sum += luminance;
+    squares += luminance * luminance;
+  }
+};
+
+/// Numbers of points per pixel and pass. In many pictures, most pixels are dark or uniform, and only a few of them are
+/// noisy. The noisy pixels then receive more points. The formula is derived in docs/theory/images.md.
+class PixelPoints {
+ public:
+  /// Every pixel has the same number of points.
+  /// \param points number of points per pixel
+  PixelPoints(std::size_t pixels, std::uint32_t points)
+      : points_(pixels, points), total_(std::uint64_t{pixels} * points) {}
+
+  /// Chooses the numbers from training samples. All numbers are `min_points` times a power of two. If this reduces the
+  /// variance by less than a factor of two at equal cost, all numbers are `min_points`.
+  /// \param moments moments of the training samples, row by row
+  /// \param samples number of training samples per pixel; >= 2
+  PixelPoints(const std::vector<PixelMoments>& moments, std::uint32_t samples, std::size_t columns,
+              std::uint32_t min_points);
+
+  std::uint32_t operator[](std::size_t pixel) const { return points_[pixel]; }
+  /// Returns the number of points of all pixels.
+  std::uint64_t total() const { return total_; }
+
+ private:
+  std::vector<std::uint32_t> points_;
+  std::uint64_t total_ = 0;
+};
+
+}  // namespace retrace::raytrace
