@@ -30,7 +30,10 @@ void find_offset(Design& design) {
   const Vec2 centre_mm = given ? Vec2((*given)[0], (*given)[1]) - half_mm : Vec2(Vec2::Zero());
   const auto surface = surface_of(*design.entrance->form(), {centre_mm.x(), centre_mm.y(), 0.0});
   read_named(design.where(design.entrance_key()), [&] {
-    geometry::check_folds(*surface, geometry::to_polygon({-half_mm, half_mm}));
+    // Messages give positions in the part frame. The substrate is given relative to the centre of the part.
+    const Vec2 middle_mm = centre_mm + half_mm;
+    geometry::check_folds(*surface_of(*design.entrance->form(), {middle_mm.x(), middle_mm.y(), 0.0}),
+                          geometry::to_polygon({Vec2::Zero(), 2.0 * half_mm}));
   });
   offset->entrance_mm = [surface](const Vec2& position_mm) { return surface->at(position_mm).height_mm; };
   const geometry::SubstrateMeasures measures = read_named(design.where(geometry::substrate_shape_key(*part.substrate)),
