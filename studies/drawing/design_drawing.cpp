@@ -63,8 +63,10 @@ void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
   const bool hexagonal = std::holds_alternative<geometry::HexagonalCube>(spec.element);
   panel.circle_radius_mm = radius;
   panel.circle_mm = apex;
-  panel.dimensions.push_back(
-      {Side::below, apex - Vec2(radius, 0.0), apex + Vec2(radius, 0.0), "aperture", a.aperture_mm});
+  const bool is_round = std::holds_alternative<geometry::RoundCube>(spec.element);
+  panel.dimensions.push_back({Side::below, apex - Vec2(radius, 0.0), apex + Vec2(radius, 0.0),
+                              is_round ? "diameter" : "aperture", a.aperture_mm});
+  if (is_round) return;
   const double half_side = 0.5 * std::numbers::sqrt3 * radius;
   if (hexagonal) {
     add(panel.dimensions, Side::left, apex + Vec2(-0.5 * radius, -half_side), apex + Vec2(-0.5 * radius, half_side),
