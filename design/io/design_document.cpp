@@ -16,8 +16,8 @@ namespace {
 
 using geometry::Arrangement, geometry::Cant, geometry::CylinderSubstrate, geometry::EdgeShape, geometry::Element,
     geometry::ElementAxes, geometry::Extent, geometry::FormulaSubstrate, geometry::HexagonalCube, geometry::PartSpec,
-    geometry::PlaneSubstrate, geometry::RoundCube, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate, geometry::Substrate,
-    geometry::TriangularCube, schema::Document, schema::Value;
+    geometry::PlaneSubstrate, geometry::RoundCube, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate,
+    geometry::Substrate, geometry::TriangularCube, schema::Document, schema::Value;
 
 Value list_of(std::span<const double> values) {
   return std::vector<double>(values.begin(), values.end());
@@ -315,8 +315,7 @@ bool is_below_entrance(const Design& design) {
 
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
-  const bool is_round =
-      design.elements() != nullptr && std::holds_alternative<RoundCube>(design.part().element);
+  const bool is_round = design.elements() != nullptr && std::holds_alternative<RoundCube>(design.part().element);
   if (!is_below_entrance(design) && !is_round) keys.set_positive("thickness_mm", design.thickness_mm());
   keys.set_word("material", design.substance.material);
   if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);

@@ -136,8 +136,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes, and that a single element has no
-/// outline unless it is a round cube corner.
+/// Checks that a design with a curved entrance face has a convex outline without holes, and that a single element has
+/// no outline unless it is a round cube corner.
 void check_outline(const Document& document, const PartSpec& part) {
   if (has_outline(document) && part.array.arrangement == Arrangement::single &&
       !std::holds_alternative<RoundCube>(part.element))
@@ -160,9 +160,8 @@ void check_dihedral_errors(const Document& document, const PartSpec& part) {
   const std::size_t count = document.numbers(key).size();
   if (!is_prism(part) && count != 1 && count != 3)
     document.fail(
-        key,
-        fmt::format("must be a number or a list of three numbers, one for each dihedral edge, got a list of {}",
-                    count));
+        key, fmt::format("must be a number or a list of three numbers, one for each dihedral edge, got a list of {}",
+                         count));
 }
 
 void check_facet_tilts(const Document& document, const PartSpec& part) {
@@ -355,8 +354,7 @@ void check_face_of_round_cube(const Document& document, const PartSpec& part) {
   const auto* const cube = std::get_if<RoundCube>(&part.element);
   if (cube == nullptr) return;
   const NumberRange chamfers{.low = 0.0, .high = 0.5 * cube->diameter_mm, .high_included = false};
-  if (!chamfers.contains(cube->chamfer_mm))
-    document.fail("element.chamfer_mm", of_range(chamfers, cube->chamfer_mm));
+  if (!chamfers.contains(cube->chamfer_mm)) document.fail("element.chamfer_mm", of_range(chamfers, cube->chamfer_mm));
   for (const std::string_view key : {"surface.rim_radius_um", "surface.rim_chamfer_um"})
     if (document.number(key) > 0.0)
       document.fail(key, "not allowed for element.kind = \"round_icc\", which has element.chamfer_mm");
@@ -364,27 +362,30 @@ void check_face_of_round_cube(const Document& document, const PartSpec& part) {
     document.fail("shell", "not allowed together with a mount or a chamfer in [element]");
   if (document.has("part.facets")) document.fail("part.facets", "not allowed for element.kind = \"round_icc\"");
   if (!cube->outline) return;
-  if (cube->chamfer_mm > 0.0) document.fail("element.chamfer_mm", "must be 0 together with [outline], got " + shortest(cube->chamfer_mm));
+  if (cube->chamfer_mm > 0.0)
+    document.fail("element.chamfer_mm", "must be 0 together with [outline], got " + shortest(cube->chamfer_mm));
   if (document.has("outline.margin_mm") && document.number("outline.margin_mm") > 0.0)
     document.fail("outline.margin_mm", "must be 0 for element.kind = \"round_icc\"");
   if (!cube->outline->is_convex() || !geometry::contains(cube->outline->hull, cube->outline->box_mm.centre(), 0.0))
-    document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
-                  "must be a convex outline without holes that contains the centre of its bounding box, because the apex "
-                  "is below this centre");
+    document.fail(
+        document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
+        "must be a convex outline without holes that contains the centre of its bounding box, because the apex "
+        "is below this centre");
 }
 
 /// Checks that three mirrors without a body have no key of a body.
 void check_hollow(const Document& document) {
   constexpr std::string_view key = "element.hollow";
   if (!document.has(key) || !document.flag(key)) return;
-  for (const std::string_view of_body : {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c",
-                                         "body.absorption_per_mm"})
+  for (const std::string_view of_body :
+       {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c", "body.absorption_per_mm"})
     if (document.has(of_body)) document.fail(of_body, "not allowed together with element.hollow = true");
   if (document.text("idealisation.facets") == "mirror" || document.text("body.facet_coating") != "none") return;
   for (std::size_t i = 0; i < document.count(kFacetLayers); ++i)
     if (!document.has(schema::path_of_entry(kFacetLayers, i) + ".thickness_nm")) return;
-  document.fail(key, "requires mirrors: idealisation.facets = \"mirror\", body.facet_coating = \"aluminium\" or an opaque "
-                     "layer in coating.facets");
+  document.fail(key,
+                "requires mirrors: idealisation.facets = \"mirror\", body.facet_coating = \"aluminium\" or an opaque "
+                "layer in coating.facets");
 }
 
 void check_bowl(const Document& document) {
@@ -453,18 +454,18 @@ constexpr schema::Words kScratchKeys = {kScratches, "element.width_mm"};
 constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_deg", kDihedralErrorArcmin,
                                       kDihedralErrorArcsec,     kFacetTilt,         kRandomTilt};
 constexpr schema::Words kMaskKeys = {"array.mask", "substrate.kind"};
-constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "substrate.kind",
-                                       kDihedralErrorArcmin, kDihedralErrorArcsec, kFacetTilt, kRandomTilt};
+constexpr schema::Words kFacetsKeys = {"part.facets",        "array.extent", "substrate.kind", kDihedralErrorArcmin,
+                                       kDihedralErrorArcsec, kFacetTilt,     kRandomTilt};
 constexpr schema::Words kSubstrateKeys = {"substrate.kind", "substrate.element_axes", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
 constexpr schema::Words kLengthKeys = {"element.length_mm", "element.edge_length_mm"};
-constexpr schema::Words kFaceKeys = {"element.chamfer_mm",     "element.recess_mm",      "element.mount_diameter_mm",
-                                     "surface.rim_radius_um",  "surface.rim_chamfer_um", "part.facets",
-                                     "outline.margin_mm",      "outline.holes_mm",       "outline.polygon_mm",
-                                     "outline.dxf"};
-constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",       "body.catalogue",
-                                       "body.refractive_index", "body.temperature_c",  "body.absorption_per_mm",
+constexpr schema::Words kFaceKeys = {
+    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
+    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
+    "outline.polygon_mm",     "outline.dxf"};
+constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",      "body.catalogue",
+                                       "body.refractive_index", "body.temperature_c", "body.absorption_per_mm",
                                        "idealisation.facets",   "body.facet_coating", "coating.facets"};
 constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
@@ -575,19 +576,22 @@ constexpr schema::Rule kRules[] = {
                   "The bowl of a mirror behind a ball extends at most to the angle at which the bowls of neighbouring "
                   "balls meet.",
                   check_by<check_bowl>},
-    schema::Check{kLengthKeys,
-                  "The length of a round cube corner must be so large that its facets, including angle errors and a cant, "
-                  "do not cut its face.",
-                  check_by<of_part<check_length_of_round_cube>>},
-    schema::Check{kFaceKeys,
-                  "The chamfer of a round cube corner is narrower than the radius of its face. A mount and a chamfer are "
-                  "not allowed together with `[[shell]]`. With an `[outline]`, a chamfer and a margin are not allowed. "
-                  "The outline must be convex and contain the centre of its bounding box, which is above the apex.",
-                  check_by<of_part<check_face_of_round_cube>>},
-    schema::Check{kHollowKeys,
-                  "A hollow cube corner has mirrors on its facets. The keys of the material, its index and its absorption "
-                  "are not allowed.",
-                  check_by<check_hollow>},
+    schema::Check{
+        kLengthKeys,
+        "The length of a round cube corner must be so large that its facets, including angle errors and a cant, "
+        "do not cut its face.",
+        check_by<of_part<check_length_of_round_cube>>},
+    schema::Check{
+        kFaceKeys,
+        "The chamfer of a round cube corner is narrower than the radius of its face. A mount and a chamfer are "
+        "not allowed together with `[[shell]]`. With an `[outline]`, a chamfer and a margin are not allowed. "
+        "The outline must be convex and contain the centre of its bounding box, which is above the apex.",
+        check_by<of_part<check_face_of_round_cube>>},
+    schema::Check{
+        kHollowKeys,
+        "A hollow cube corner has mirrors on its facets. The keys of the material, its index and its absorption "
+        "are not allowed.",
+        check_by<check_hollow>},
     schema::Check{kHeightKeys,
                   "If the rms height of the roughness is above 0, its correlation length is required. If the rms "
                   "height of the waviness is above 0, its period is required.",

@@ -22,12 +22,17 @@ constexpr Condition kArrayOfNoBall =
     is_not(kKind, kBall,
            "not allowed for element.kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
 
+constexpr Condition kNotRound =
+    is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm");
+
 constexpr Condition kPrismOnly[] = {
-    kElementOfNoBall, is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
+    kElementOfNoBall, kNotRound,
+    is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
-    kElementOfNoBall, is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm"),
+    kElementOfNoBall, kNotRound,
     is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
+constexpr Condition kCantOnly[] = {kElementOfNoBall,
+                                   is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
@@ -51,15 +56,18 @@ constexpr Row kElementRows[] = {
     {"diameter_mm", kSize, kRequired,
      "Diameter of the circular face. The circle is replaced by a polygon of the same area with 180 sides.", kRoundOnly},
     {"length_mm", kSize,
-     Computed{"the minimum length, at which the facets reach the rim of the face: `diameter_mm` / sqrt(2) + 1e-6 mm, and "
-              "more if angle errors or a cant raise the facets"},
+     Computed{
+         "the minimum length, at which the facets reach the rim of the face: `diameter_mm` / sqrt(2) + 1e-6 mm, and "
+         "more if angle errors or a cant raise the facets"},
      "Length from the apex to the face.", kRoundOnly},
     {"edge_length_mm", kSize, Computed{"sqrt(3) times the length"},
-     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, before it was made round. "
+     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, before it was made "
+     "round. "
      "It is sqrt(3) times the length and replaces `length_mm`.",
      kEdgeLengthOnly},
     {"chamfer_mm", kGap, 0.0,
-     "Width of the chamfer at the rim of the face, in plan. Light that meets the chamfer from outside or from inside is "
+     "Width of the chamfer at the rim of the face, in plan. Light that meets the chamfer from outside or from inside "
+     "is "
      "stopped.",
      kRoundOnly},
     {"recess_mm", kGap, 0.0,
@@ -118,8 +126,8 @@ constexpr Row kArrayRows[] = {
      "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
-    {"arrangement", Word{kSingle}, "single", "Arrangement of the element. A cube corner with a circular face is single.",
-     kOfRound},
+    {"arrangement", Word{kSingle}, "single",
+     "Arrangement of the element. A cube corner with a circular face is single.", kOfRound},
     {"arrangement", Word{kBallArrangements}, "packed",
      "Arrangement of the balls. `\"packed\"` is an infinite layer with hexagonal packing.", kOfBalls},
     {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},

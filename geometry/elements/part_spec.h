@@ -44,8 +44,8 @@ struct TriangularCube {
   Cant cant = {};
 };
 
-/// Single cube corner with a circular face, for ranging and surveying. It is a full cube corner that is cut by a cylinder
-/// about its axis. The highest points of the nominal facets inside the circle are on z = 0.
+/// Single cube corner with a circular face, for ranging and surveying. It is a full cube corner that is cut by a
+/// cylinder about its axis. The highest points of the nominal facets inside the circle are on z = 0.
 struct RoundCube {
   double diameter_mm = 0.0;  ///< diameter of the face; > 0
   Cant cant = {};

@@ -12,8 +12,7 @@ namespace retrace::geometry {
 
 /// Words of `element.kind`, in the order of the alternatives of Element. Only designs allow round cube corners and
 /// balls.
-inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc",
-                                                "ball"};
+inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ball"};
 inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
 
 inline constexpr auto kRoundCube = schema::only(kElementKinds, "round_icc");

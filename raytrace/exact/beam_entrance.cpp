@@ -148,7 +148,8 @@ void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into)
 /// Divides the portion of a beam that is above one region of a part with zones (areas with different arrays).
 void divide_region(const PeriodicRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
   const auto add = [&](const geometry::Polygon& tile, InstanceOffsets places) {
-    into.add(cut_to_outline(cut_to_outline(into.whole().corners, tile), region.outline_mm()), std::move(places), number);
+    into.add(cut_to_outline(cut_to_outline(into.whole().corners, tile), region.outline_mm()), std::move(places),
+             number);
   };
   for (const PeriodicRegion::Tiles& tiles : region.tiles(most_step)) {
     if (!tiles.inner.empty()) add(tiles.first, tiles.inner);

@@ -10,10 +10,10 @@ namespace retrace::raytrace {
 struct LitFace {
   explicit LitFace(const BeamScene& scene);
 
-  Corners reached;                    ///< portion of the face that the incident light reaches
-  Corners reflected;                  ///< portion whose reflected light passes the mount on its way back
-  double reached_fraction = 0.0;      ///< area of `reached`, divided by the area of the face
-  double reflected_fraction = 0.0;    ///< area of `reflected`, divided by the area of the face
+  Corners reached;                  ///< portion of the face that the incident light reaches
+  Corners reflected;                ///< portion whose reflected light passes the mount on its way back
+  double reached_fraction = 0.0;    ///< area of `reached`, divided by the area of the face
+  double reflected_fraction = 0.0;  ///< area of `reflected`, divided by the area of the face
 };
 
 /// Returns the area of a horizontal polygon, which may have either orientation.

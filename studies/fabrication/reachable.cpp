@@ -84,9 +84,10 @@ design::Design reached(const design::Design& design, const std::string& facets_f
 
 void check_is_cut(const design::Design& design) {
   if (std::holds_alternative<geometry::RoundCube>(design.part().element))
-    throw InputError(design.where("element.kind"),
-                     "must be \"rtp\", \"hexagonal_icc\" or \"triangular_icc\" for a job, because the processes of retrace "
-                     "do not cut single round cube corners, got \"round_icc\"");
+    throw InputError(
+        design.where("element.kind"),
+        "must be \"rtp\", \"hexagonal_icc\" or \"triangular_icc\" for a job, because the processes of retrace "
+        "do not cut single round cube corners, got \"round_icc\"");
 }
 
 namespace {

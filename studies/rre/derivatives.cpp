@@ -55,7 +55,8 @@ std::vector<schema::Value> values_at(const design::Design& design, RreParameter 
     for (double& error : errors) error = (error + kArcminPerDeg * more_deg) * (is_in_arcsec(design) ? 60.0 : 1.0);
     return {errors};
   }
-  if (parameter == RreParameter::thickness_mm && is_round(spec)) return {value + geometry::element_depth_mm(spec.element)};
+  if (parameter == RreParameter::thickness_mm && is_round(spec))
+    return {value + geometry::element_depth_mm(spec.element)};
   const auto* const prism = std::get_if<RtpElement>(&spec.element);
   if (parameter == RreParameter::size_mm && prism != nullptr)
     return {value, prism->width_mm * (value / prism->base_mm)};

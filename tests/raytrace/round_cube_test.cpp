@@ -32,8 +32,8 @@ double length_mm(const PartSpec& spec) {
   return element_depth_mm(spec.element) + spec.thickness_mm;
 }
 
-/// Returns optics without reflection at the face. Walls absorb all light, so that light that meets the cylinder does not
-/// come back.
+/// Returns optics without reflection at the face. Walls absorb all light, so that light that meets the cylinder does
+/// not come back.
 Optics lossless(double index, bool has_mirrors) {
   Optics optics;
   optics.index = index;
@@ -83,7 +83,7 @@ struct CirclePosition {
 
 /// Returns the area of the points that are inside all discs, divided by the area of a circle. The points form a grid.
 double common_area(const std::vector<CirclePosition>& discs, double radius_mm) {
-  constexpr int kPoints = 2000;
+  constexpr int kPoints = 800;
   const double step = 2.0 * radius_mm / kPoints;
   int inside = 0;
   for (int i = 0; i < kPoints; ++i)
@@ -114,8 +114,8 @@ TEST(RoundCube, SolidsAreClosed) {
   expect_closed_part(errors);
 }
 
-// The part of the face that returns light is the intersection of the face with its image in the apex, projected along the
-// refracted light.
+// The part of the face that returns light is the intersection of the face with its image in the apex, projected along
+// the refracted light.
 TEST(RoundCube, MirrorsReturnTheOverlapOfTwoCircles) {
   for (const double plate_mm : {1e-6, 0.86, 6.0}) {
     const PartSpec spec = part_of({kDiameter}, plate_mm);
@@ -140,8 +140,7 @@ TEST(RoundCube, TotalReflectionReturnsTheOverlapUpToItsLimit) {
   for (const double azimuth_deg : {0.0, 25.0, 60.0, 120.0, 180.0})
     for (const double incidence_deg : {0.0, 4.0, 10.0, 20.0, 30.0}) {
       const Ledger ledger = beams(spec, lossless(kSilica, false), from(incidence_deg, azimuth_deg));
-      const double expected =
-          overlap(0.5 * kDiameter, 2.0 * length_mm(spec) * tan_refracted(incidence_deg, kSilica));
+      const double expected = overlap(0.5 * kDiameter, 2.0 * length_mm(spec) * tan_refracted(incidence_deg, kSilica));
       const std::string name = std::to_string(incidence_deg) + " " + std::to_string(azimuth_deg);
       if (max_facet_cosine(incidence_deg, azimuth_deg, kSilica) < critical) {
         EXPECT_NEAR(ledger[Account::retroreflected], expected, kPolygons) << name;
@@ -161,7 +160,8 @@ TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
   silica.index = kSilica;
   BeamPolicy policy;
   policy.cutoff = 1e-9;
-  const Ledger ledger = BeamTracer(build_part(part_of({kDiameter}))).trace(silica, from(0.0), {0.01}, policy).ledgers[0];
+  const Ledger ledger =
+      BeamTracer(build_part(part_of({kDiameter}))).trace(silica, from(0.0), {0.01}, policy).ledgers[0];
   EXPECT_NEAR(ledger[Account::retroreflected], 1.0, 1e-6);
 }
 
@@ -169,8 +169,9 @@ TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
 // directions of the light in air and in the body.
 TEST(RoundCube, MountReturnsTheCommonAreaOfItsDiscs) {
   for (const auto& [recess_mm, mount_mm, index] :
-       {std::tuple{3.0, kDiameter, kSilica}, std::tuple{8.0, kDiameter, kSilica}, std::tuple{4.0, 0.8 * kDiameter, kSilica},
-        std::tuple{5.0, 1.1 * kDiameter, 1.0}, std::tuple{0.0, 0.7 * kDiameter, kSilica}}) {
+       {std::tuple{3.0, kDiameter, kSilica}, std::tuple{8.0, kDiameter, kSilica},
+        std::tuple{4.0, 0.8 * kDiameter, kSilica}, std::tuple{5.0, 1.1 * kDiameter, 1.0},
+        std::tuple{0.0, 0.7 * kDiameter, kSilica}}) {
     RoundCube cube{kDiameter};
     cube.recess_mm = recess_mm;
     cube.mount_diameter_mm = mount_mm;
@@ -200,8 +201,7 @@ TEST(RoundCube, ChamferReducesTheFace) {
   for (const double incidence_deg : {0.0, 10.0, 25.0}) {
     const Ledger ledger = beams(spec, lossless(kSilica, true), from(incidence_deg));
     const double shift_mm = 2.0 * length_mm(spec) * tan_refracted(incidence_deg, kSilica);
-    EXPECT_NEAR(ledger[Account::retroreflected],
-                ratio * ratio * overlap(0.5 * kDiameter * ratio, shift_mm), kPolygons);
+    EXPECT_NEAR(ledger[Account::retroreflected], ratio * ratio * overlap(0.5 * kDiameter * ratio, shift_mm), kPolygons);
     EXPECT_GE(ledger[Account::stopped], 1.0 - ratio * ratio - 1e-12);
     EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
   }
@@ -257,7 +257,8 @@ TEST(RoundCube, BeamsAndRaysAgree) {
           MonteCarlo(part).trace(optics, from(incidence_deg, 50.0), {0.5}, rays(1U << 15), {}).cones[0];
       EXPECT_NEAR(exact.total(), 1.0, 1e-9);
       EXPECT_NEAR(traced.ledger.total(), 1.0, 1e-9);
-      EXPECT_NEAR(exact[Account::retroreflected], traced.rre, 4.0 * traced.std_error + exact[Account::truncated] + 1e-4);
+      EXPECT_NEAR(exact[Account::retroreflected], traced.rre,
+                  4.0 * traced.std_error + exact[Account::truncated] + 1e-4);
       for (std::size_t k = 0; k < kAccountCount; ++k)
         EXPECT_NEAR(exact.power[k], traced.ledger.power[k], exact[Account::truncated] + 3e-3)
             << incidence_deg << " " << kAccountNames[k];
@@ -285,7 +286,8 @@ TEST(RoundCube, WithAHexagonalOutlineIsTheHexagonalCube) {
     }
 }
 
-// A hollow cube corner is a cube corner of index 1. Its effective aperture follows from the direction of the light in air.
+// A hollow cube corner is a cube corner of index 1. Its effective aperture follows from the direction of the light in
+// air.
 TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
   Optics hollow;
   hollow.mirror_facets = true;
@@ -295,7 +297,9 @@ TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
     EXPECT_NEAR(ledger[Account::retroreflected],
                 overlap(0.5 * kDiameter, 2.0 * length_mm(spec) * tan_deg(incidence_deg)), kPolygons);
     EXPECT_EQ(ledger[Account::front_specular], 0.0);
-    EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::side_exit], 1.0, 1e-9);
+    // Light that misses a mirror passes through the plane of the face or through the cylinder.
+    EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::side_exit] + ledger[Account::returned_elsewhere], 1.0,
+                1e-9);
   }
 }
 
@@ -323,8 +327,10 @@ TEST(RoundCube, MountStopsSingleRays) {
   // A ray that starts between the face and the edge of the mount is stopped only on its way back.
   EXPECT_NEAR(ray_through(part, {9.0, 0.0, 1.0}, down).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {7.5, 0.0, 1.0}, down).ledger[Account::retroreflected], 1.0, 1e-12);
-  // The ray passes the edge and is stopped on its way back.
-  EXPECT_NEAR(ray_through(part, {-7.0, 0.0, 5.0}, {-0.3, 0.0, -1.0}).ledger[Account::stopped], 1.0, 1e-12);
+  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. Its way back crosses the plane of the edge
+  // outside.
+  EXPECT_NEAR(ray_through(part, {14.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::stopped], 1.0, 1e-12);
+  EXPECT_NEAR(ray_through(part, {15.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::retroreflected], 1.0, 1e-12);
   EXPECT_EQ(ray_through(part, {30.0, 0.0, 50.0}, down).rays_missed, 1U);
 }
 

@@ -219,7 +219,8 @@ std::string rre_csv(const RreResult& result) {
     const auto is_listed_at = [&](const RrePoint& p) {
       return raytrace::is_listed(static_cast<raytrace::Account>(k), p.ledger.power[k]);
     };
-    if (!raytrace::is_listed(static_cast<raytrace::Account>(k), 0.0) && std::ranges::none_of(result.points, is_listed_at))
+    if (!raytrace::is_listed(static_cast<raytrace::Account>(k), 0.0) &&
+        std::ranges::none_of(result.points, is_listed_at))
       continue;
     accounts.push_back(k);
     names.push_back(kAccountNames[k]);
