@@ -11,6 +11,7 @@
 #include "geometry/outline/plan_region.h"
 #include "raytrace/paths/ray_tracer.h"
 #include "tests/support/engines.h"
+#include "tests/support/entrance_surfaces.h"
 #include "tests/support/outlined_parts.h"
 
 namespace retrace::testing::round_cube_test {
@@ -263,6 +264,28 @@ TEST(RoundCube, BeamsAndRaysAgree) {
         EXPECT_NEAR(exact.power[k], traced.ledger.power[k], exact[Account::truncated] + 3e-3)
             << incidence_deg << " " << kAccountNames[k];
     }
+}
+
+// An entrance surface in the plane of the face takes the light of the face. Its rays meet the chamfer and the mount in
+// other functions.
+TEST(RoundCube, AnEntranceSurfaceInThePlaneOfTheFaceChangesNothing) {
+  RoundCube cube{kDiameter};
+  cube.recess_mm = 4.0;
+  cube.mount_diameter_mm = 0.95 * kDiameter;
+  cube.chamfer_mm = 0.7;
+  const Part part = build_part(part_of(cube));
+  Optics silica;
+  silica.index = kSilica;
+  const Entrance plane = plane_entrance(part.thickness_mm);
+  for (const double incidence_deg : {0.0, 15.0, 30.0}) {
+    const Illumination light = from(incidence_deg, 70.0);
+    const ConeResult a = MonteCarlo(part).trace(silica, light, {0.5}, rays(1U << 15), {}).cones[0];
+    const ConeResult b =
+        MonteCarlo(part, MonteCarlo::Engine::embree, &plane).trace(silica, light, {0.5}, rays(1U << 15), {}).cones[0];
+    for (std::size_t k = 0; k < kAccountCount; ++k)
+      EXPECT_NEAR(a.ledger.power[k], b.ledger.power[k], 3e-3) << incidence_deg << " " << kAccountNames[k];
+    EXPECT_NEAR(b.ledger.total(), 1.0, 1e-9);
+  }
 }
 
 // A face that a hexagon cuts out of the circle is that of a hexagonal cube corner.
