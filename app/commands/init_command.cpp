@@ -24,7 +24,7 @@ std::vector<Argument> arguments(InitOptions& options) {
     return words;
   };
   return {
-      {"KIND", "rtp, hexagonal_icc, triangular_icc or round_zone_lens", &options.kind, one_of(kinds)},
+      {"KIND", "rtp, hexagonal_icc, triangular_icc, round_icc or round_zone_lens", &options.kind, one_of(kinds)},
       {"--editor", "add a first line that names the JSON Schema of the file for editors, by its path on this machine",
        &options.editor}};
 }

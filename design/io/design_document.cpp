@@ -7,6 +7,7 @@
 #include "core/schema/writer.h"
 #include "design/file_names.h"
 #include "design/io/design_format.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/outline/plan_region.h"
 
@@ -15,8 +16,8 @@ namespace {
 
 using geometry::Arrangement, geometry::Cant, geometry::CylinderSubstrate, geometry::EdgeShape, geometry::Element,
     geometry::ElementAxes, geometry::Extent, geometry::FormulaSubstrate, geometry::HexagonalCube, geometry::PartSpec,
-    geometry::PlaneSubstrate, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate, geometry::Substrate,
-    geometry::TriangularCube, schema::Document, schema::Value;
+    geometry::PlaneSubstrate, geometry::RoundCube, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate,
+    geometry::Substrate, geometry::TriangularCube, schema::Document, schema::Value;
 
 Value list_of(std::span<const double> values) {
   return std::vector<double>(values.begin(), values.end());
@@ -54,15 +55,35 @@ std::string_view word_of(const PartSpec& part) {
   return part.is_pin_bundle ? "pins" : geometry::kArrangementWords[static_cast<std::size_t>(part.array.arrangement)];
 }
 
-void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant& cant) {
-  keys.set_word("kind", kind);
-  keys.set("aperture_mm", aperture_mm);
+void set_cant(Keys& keys, const Cant& cant) {
   if (cant.deg == 0.0) return;
   keys.set("cant_deg", cant.deg);
   keys.set("cant_azimuth_deg", cant.azimuth_deg);
 }
 
-void set_element(Document& document, const Element& element) {
+void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant& cant) {
+  keys.set_word("kind", kind);
+  keys.set("aperture_mm", aperture_mm);
+  set_cant(keys, cant);
+}
+
+/// Returns the outline of the array or of a round cube corner, or null.
+const geometry::PlanRegion* outline_of(const PartSpec& part) {
+  const auto* const cube = std::get_if<RoundCube>(&part.element);
+  return cube != nullptr ? cube->outline.get() : part.array.outline.get();
+}
+
+void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm) {
+  keys.set_word("kind", "round_icc");
+  keys.set("diameter_mm", cube.diameter_mm);
+  keys.set("length_mm", geometry::element_depth_mm(cube) + thickness_mm);
+  set_cant(keys, cube.cant);
+  keys.set_positive("chamfer_mm", cube.chamfer_mm);
+  keys.set_positive("recess_mm", cube.recess_mm);
+  keys.set_positive("mount_diameter_mm", cube.mount_diameter_mm);
+}
+
+void set_element(Document& document, const PartSpec& part) {
   Keys keys(document, "element");
   std::visit(
       Overloaded{[&](const RtpElement& prism) {
@@ -72,8 +93,9 @@ void set_element(Document& document, const Element& element) {
                    keys.set("apex_angle_deg", prism.apex_angle_deg);
                  },
                  [&](const HexagonalCube& cube) { set_cube(keys, "hexagonal_icc", cube.aperture_mm, cube.cant); },
-                 [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); }},
-      element);
+                 [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); },
+                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm); }},
+      part.element);
 }
 
 /// Writes all borders of an outline with their arcs, in the part frame.
@@ -112,7 +134,7 @@ void set_outline(Document& document, const geometry::PlanRegion& plan, const Out
 
 void set_array(Document& document, const ElementArray& elements) {
   const PartSpec& part = elements.part;
-  if (part.array.outline) set_outline(document, *part.array.outline, elements.outline);
+  if (const auto* const outline = outline_of(part)) set_outline(document, *outline, elements.outline);
   Keys keys(document, "array");
   keys.set_word("arrangement", word_of(part));
   if (part.array.arrangement == Arrangement::single) return;
@@ -216,7 +238,7 @@ void set_zones(Document& document, const ZonedPart& part) {
 /// Sets the tables that describe the shape.
 void set_shape(Document& document, const Design& design) {
   std::visit(Overloaded{[&](const ElementArray& array) {
-                          set_element(document, array.part.element);
+                          set_element(document, array.part);
                           set_array(document, array);
                           if (array.part.substrate) set_substrate(document, *array.part.substrate);
                           if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
@@ -229,7 +251,7 @@ void set_shape(Document& document, const Design& design) {
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
                         [&](const ZonedPart& part) {
-                          set_element(document, part.base.element);
+                          set_element(document, part.base);
                           set_array(document, {part.base, {}, {}, part.outline});
                           set_zones(document, part);
                         },
@@ -293,7 +315,8 @@ bool is_below_entrance(const Design& design) {
 
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
-  if (!is_below_entrance(design)) keys.set_positive("thickness_mm", design.thickness_mm());
+  const bool is_round = design.elements() != nullptr && std::holds_alternative<RoundCube>(design.part().element);
+  if (!is_below_entrance(design) && !is_round) keys.set_positive("thickness_mm", design.thickness_mm());
   keys.set_word("material", design.substance.material);
   if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);
   if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);

@@ -76,7 +76,6 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
 constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
-                                      is_not(kArrangement, kSingle, "not allowed for array.arrangement = \"single\""),
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
 constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};
 constexpr Rule kOutlineRules[] = {OneOf{
@@ -115,7 +114,8 @@ const Table kTables[] = {
      .when = kWithElements},
     {.name = "outline",
      .meaning = "Outline of a finite part that is not a rectangle. It replaces `x_length_mm`, `y_length_mm` and the "
-                "offsets of `[array]`. The array fills the bounding box of the outline, and the outline cuts it.",
+                "offsets of `[array]`. The array fills the bounding box of the outline, and the outline cuts it. The "
+                "outline of a round cube corner cuts its face; the apex is below the centre of the bounding box.",
      .rows = outline_rows(),
      .rules = kOutlineRules,
      .presence = Presence::optional,

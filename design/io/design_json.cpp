@@ -25,6 +25,7 @@ struct ElementName {
   std::string operator()(const TriangularCube& e) const {
     return fmt::format("triangular ICC {} mm", fixed(e.aperture_mm, 3));
   }
+  std::string operator()(const RoundCube& e) const { return fmt::format("round ICC {} mm", fixed(e.diameter_mm, 3)); }
 };
 
 }  // namespace

@@ -269,6 +269,11 @@ Design resolved(std::shared_ptr<const Document> given) {
                       document.number_if("body.temperature_c"),
                       read_absorption(document, "body.absorption_per_mm"),
                       document.number("body.back_index")};
+  if (document.has("element.hollow") && document.flag("element.hollow")) {
+    design.substance.material = "air";
+    design.substance.refractive_index = 1.0;
+    design.substance.absorption_per_mm = 0.0;
+  }
   design.wet_back = read_wet_back(document);
   design.surface = read_surface(document);
   design.light = {read_colour(document), read_polarisation(document)};

@@ -25,8 +25,8 @@ namespace retrace::design {
 namespace {
 
 using geometry::AngleErrors, geometry::Arrangement, geometry::Cell, geometry::EdgeShape, geometry::ElementAxes,
-    geometry::Extent, geometry::HexagonalCube, geometry::PartSpec, geometry::PlaneSubstrate, geometry::RtpElement,
-    geometry::Scratch, geometry::TriangularCube, schema::Document;
+    geometry::Extent, geometry::HexagonalCube, geometry::PartSpec, geometry::PlaneSubstrate, geometry::RoundCube,
+    geometry::RtpElement, geometry::Scratch, geometry::TriangularCube, schema::Document;
 
 /// Maximum number of elements of a design. It keeps element numbers within 32 bits and limits the memory.
 constexpr double kMaxElements = 1e8;
@@ -80,6 +80,10 @@ struct FootprintOf {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
+  /// Returns the footprint of a circle.
+  Footprint operator()(const RoundCube& cube) const {
+    return {cube.diameter_mm, cube.diameter_mm, 0.25 * std::numbers::pi * cube.diameter_mm * cube.diameter_mm};
+  }
   /// Returns the footprint of a triangle whose apex is at the centre of the part. A vertex of the triangle is on the x
   /// axis, one radius from the apex. The part therefore extends over two radii along x.
   Footprint operator()(const TriangularCube& cube) const {
@@ -132,24 +136,32 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes.
+/// Checks that a design with a curved entrance face has a convex outline without holes, and that a single element has
+/// no outline unless it is a round cube corner.
 void check_outline(const Document& document, const PartSpec& part) {
+  if (has_outline(document) && part.array.arrangement == Arrangement::single &&
+      !std::holds_alternative<RoundCube>(part.element))
+    document.fail("outline", "not allowed for array.arrangement = \"single\", except for element.kind = \"round_icc\"");
   if (!part.array.outline || part.array.outline->is_convex() || !document.has("entrance_surface")) return;
   document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
                 "must be a convex outline without holes if the design has a table [entrance_surface]");
 }
 
-constexpr std::string_view kDihedralError = "surface.dihedral_error_arcmin";
+/// Returns the key of the errors of dihedral angles that a design contains.
+std::string_view dihedral_key(const Document& document) {
+  return document.has(kDihedralErrorArcsec) ? kDihedralErrorArcsec : kDihedralErrorArcmin;
+}
+
 constexpr std::string_view kFacetTilt = "surface.facet_tilt_arcmin";
 constexpr std::string_view kRandomTilt = "surface.angle_error_sigma_arcmin";
 
 void check_dihedral_errors(const Document& document, const PartSpec& part) {
-  const std::size_t count = document.numbers(kDihedralError).size();
+  const std::string_view key = dihedral_key(document);
+  const std::size_t count = document.numbers(key).size();
   if (!is_prism(part) && count != 1 && count != 3)
     document.fail(
-        kDihedralError,
-        fmt::format("must be a number or a list of three numbers, one for each dihedral edge, got a list of {}",
-                    count));
+        key, fmt::format("must be a number or a list of three numbers, one for each dihedral edge, got a list of {}",
+                         count));
 }
 
 void check_facet_tilts(const Document& document, const PartSpec& part) {
@@ -250,7 +262,7 @@ void check_scratches(const Document& document, const PartSpec& part) {
 /// Returns the key that a message about angle errors names. It is the first key of angle errors that the document
 /// contains. If the document contains none, `otherwise` is returned.
 std::string_view blamed_error(const Document& document, std::string_view otherwise) {
-  for (const std::string_view key : {kDihedralError, kFacetTilt})
+  for (const std::string_view key : {kDihedralErrorArcmin, kDihedralErrorArcsec, kFacetTilt})
     if (document.has(key)) return key;
   return otherwise;
 }
@@ -313,13 +325,67 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
 
 /// Checks that the plate is thick enough to cover the highest points of the elements.
 void check_thickness(const Document& document, const PartSpec& part) {
+  if (std::holds_alternative<RoundCube>(part.element)) return;  // see check_length_of_round_cube()
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
-  const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
+  const double least_mm = min_thickness_mm(part);
   if (part.thickness_mm < least_mm)
     document.fail(document.has("substrate.wall_mm") ? "substrate.wall_mm" : "body.thickness_mm",
                   fmt::format("must be >= {} so that the plate is thicker than the height of the "
                               "rims, {} mm (angle errors and a cant raise the rims), got {}",
                               shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
+}
+
+/// Checks that the facets of a round cube corner reach the rim of its face, but do not cut the face.
+void check_length_of_round_cube(const Document& document, const PartSpec& part) {
+  constexpr double kRoundingMm = 1e-9;
+  if (!std::holds_alternative<RoundCube>(part.element)) return;
+  const double depth_mm = geometry::element_depth_mm(part.element, part.angle_errors);
+  const double min_mm = depth_mm + min_thickness_mm(part);
+  if (depth_mm + part.thickness_mm >= min_mm - kRoundingMm) return;
+  const bool is_edge = document.has("element.edge_length_mm");
+  const double factor = is_edge ? std::numbers::sqrt3 : 1.0;
+  const std::string_view key = is_edge ? "element.edge_length_mm" : "element.length_mm";
+  document.fail(key, fmt::format("must be >= {} so that the facets meet the rim of the face, got {}",
+                                 shortest(factor * min_mm), shortest(document.number(key))));
+}
+
+/// Checks the mount, the chamfer and the outline of a round cube corner.
+void check_face_of_round_cube(const Document& document, const PartSpec& part) {
+  const auto* const cube = std::get_if<RoundCube>(&part.element);
+  if (cube == nullptr) return;
+  const NumberRange chamfers{.low = 0.0, .high = 0.5 * cube->diameter_mm, .high_included = false};
+  if (!chamfers.contains(cube->chamfer_mm)) document.fail("element.chamfer_mm", of_range(chamfers, cube->chamfer_mm));
+  for (const std::string_view key : {"surface.rim_radius_um", "surface.rim_chamfer_um"})
+    if (document.number(key) > 0.0)
+      document.fail(key, "not allowed for element.kind = \"round_icc\", which has element.chamfer_mm");
+  if (document.has("shell") && (cube->chamfer_mm > 0.0 || cube->mount_diameter_mm > 0.0))
+    document.fail("shell", "not allowed together with a mount or a chamfer in [element]");
+  if (document.has("part.facets")) document.fail("part.facets", "not allowed for element.kind = \"round_icc\"");
+  if (!cube->outline) return;
+  if (cube->chamfer_mm > 0.0)
+    document.fail("element.chamfer_mm", "must be 0 together with [outline], got " + shortest(cube->chamfer_mm));
+  if (document.has("outline.margin_mm") && document.number("outline.margin_mm") > 0.0)
+    document.fail("outline.margin_mm", "must be 0 for element.kind = \"round_icc\"");
+  if (!cube->outline->is_convex() || !geometry::contains(cube->outline->hull, cube->outline->box_mm.centre(), 0.0))
+    document.fail(
+        document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
+        "must be a convex outline without holes that contains the centre of its bounding box, because the apex "
+        "is below this centre");
+}
+
+/// Checks that three mirrors without a body have no key of a body.
+void check_hollow(const Document& document) {
+  constexpr std::string_view key = "element.hollow";
+  if (!document.has(key) || !document.flag(key)) return;
+  for (const std::string_view of_body :
+       {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c", "body.absorption_per_mm"})
+    if (document.has(of_body)) document.fail(of_body, "not allowed together with element.hollow = true");
+  if (document.text("idealisation.facets") == "mirror" || document.text("body.facet_coating") != "none") return;
+  for (std::size_t i = 0; i < document.count(kFacetLayers); ++i)
+    if (!document.has(schema::path_of_entry(kFacetLayers, i) + ".thickness_nm")) return;
+  document.fail(key,
+                "requires mirrors: idealisation.facets = \"mirror\", body.facet_coating = \"aluminium\" or an opaque "
+                "layer in coating.facets");
 }
 
 void check_bowl(const Document& document) {
@@ -378,21 +444,29 @@ constexpr schema::Words kOutlineKeys = {"outline.polygon_mm",      "outline.circ
                                         "outline.margin_mm",       "outline.tolerance_mm"};
 constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
                                                  "array.x_offset_mm", "array.y_offset_mm"};
-constexpr schema::Words kDihedralKeys = {kDihedralError};
+constexpr schema::Words kDihedralKeys = {kDihedralErrorArcmin, kDihedralErrorArcsec};
 constexpr schema::Words kTiltKeys = {kFacetTilt};
 constexpr schema::Words kRandomKeys = {kRandomTilt, "array.extent"};
 constexpr schema::Words kChordKeys = {"surface.edge_chords"};
 constexpr schema::Words kRimKeys = {"surface.rim_radius_um", "surface.rim_chamfer_um", "array.x_gap_mm",
                                     "array.y_gap_mm"};
 constexpr schema::Words kScratchKeys = {kScratches, "element.width_mm"};
-constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_deg", kDihedralError, kFacetTilt,
-                                      kRandomTilt};
+constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_deg", kDihedralErrorArcmin,
+                                      kDihedralErrorArcsec,     kFacetTilt,         kRandomTilt};
 constexpr schema::Words kMaskKeys = {"array.mask", "substrate.kind"};
-constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "substrate.kind",
-                                       kDihedralError, kFacetTilt,     kRandomTilt};
+constexpr schema::Words kFacetsKeys = {"part.facets",        "array.extent", "substrate.kind", kDihedralErrorArcmin,
+                                       kDihedralErrorArcsec, kFacetTilt,     kRandomTilt};
 constexpr schema::Words kSubstrateKeys = {"substrate.kind", "substrate.element_axes", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
+constexpr schema::Words kLengthKeys = {"element.length_mm", "element.edge_length_mm"};
+constexpr schema::Words kFaceKeys = {
+    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
+    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
+    "outline.polygon_mm",     "outline.dxf"};
+constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",      "body.catalogue",
+                                       "body.refractive_index", "body.temperature_c", "body.absorption_per_mm",
+                                       "idealisation.facets",   "body.facet_coating", "coating.facets"};
 constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
@@ -446,7 +520,7 @@ constexpr schema::Rule kRules[] = {
         "An outline must not cross or touch itself. Its holes must be inside it and apart from each other. The "
         "arcs of its corners must fit between their neighbours, and the margin must leave one connected area "
         "for elements. An outline that is not convex, or has holes, is not allowed together with "
-        "`[entrance_surface]`.",
+        "`[entrance_surface]`. Of the single elements, only `round_icc` may have an outline.",
         check_by<of_array<check_outline>>},
     schema::Check{
         kArrayOnSubstrateKeys,
@@ -454,7 +528,7 @@ constexpr schema::Rule kRules[] = {
         check_by<of_array<check_array_on_substrate>>},
     schema::Check{kDihedralKeys,
                   "`dihedral_error_arcmin` is one number for prisms. For cube corners, it is one number for all "
-                  "dihedral edges, or a list of three numbers.",
+                  "dihedral edges, or a list of three numbers. The same applies to `dihedral_error_arcsec`.",
                   check_by<of_part<check_dihedral_errors>>},
     schema::Check{kTiltKeys,
                   "A list of tilts has one number for each facet: two for prisms, three for cube corners. The single "
@@ -502,6 +576,22 @@ constexpr schema::Rule kRules[] = {
                   "The bowl of a mirror behind a ball extends at most to the angle at which the bowls of neighbouring "
                   "balls meet.",
                   check_by<check_bowl>},
+    schema::Check{
+        kLengthKeys,
+        "The length of a round cube corner must be so large that its facets, including angle errors and a cant, "
+        "do not cut its face.",
+        check_by<of_part<check_length_of_round_cube>>},
+    schema::Check{
+        kFaceKeys,
+        "The chamfer of a round cube corner is narrower than the radius of its face. A mount and a chamfer are "
+        "not allowed together with `[[shell]]`. With an `[outline]`, a chamfer and a margin are not allowed. "
+        "The outline must be convex and contain the centre of its bounding box, which is above the apex.",
+        check_by<of_part<check_face_of_round_cube>>},
+    schema::Check{
+        kHollowKeys,
+        "A hollow cube corner has mirrors on its facets. The keys of the material, its index and its absorption "
+        "are not allowed.",
+        check_by<check_hollow>},
     schema::Check{kHeightKeys,
                   "If the rms height of the roughness is above 0, its correlation length is required. If the rms "
                   "height of the waviness is above 0, its period is required.",

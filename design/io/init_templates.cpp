@@ -10,9 +10,9 @@
 namespace retrace::design {
 namespace {
 
-constexpr std::array<std::string_view, 4> kTemplateKinds = {"rtp", "hexagonal_icc", "triangular_icc",
+constexpr std::array<std::string_view, 5> kTemplateKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc",
                                                             "round_zone_lens"};
-constexpr std::size_t kDesignKinds = 3;
+constexpr std::size_t kDesignKinds = 4;
 
 constexpr std::string_view kRtpHead =
     R"(# A retroreflector of right triangular prisms. Lengths in mm, angles in degrees.
@@ -60,7 +60,26 @@ y_length_mm = 10
                      in_quotes(arrangement));
 }
 
-constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # flat margin at both ends in x
+constexpr std::string_view kRoundHead =
+    R"(# A single cube corner with a circular face. Lengths in mm, angles in degrees.
+# Lines that begin with "#" show defaults and alternatives.
+schema = "retrace.design/1"
+title = "Round cube corner"
+
+[element]
+kind = "round_icc"                # single cube corner, circular face
+diameter_mm = 25.4                # diameter of the face
+length_mm = 19                    # from the apex to the face; or edge_length_mm; default: the minimum
+# chamfer_mm = 0                  # width of the chamfer at the rim of the face
+# recess_mm = 0                   # depth of the face below the edge of its mount; also mount_diameter_mm
+# hollow = false                  # true: three mirrors without a body
+
+[body]
+material = "fused-silica"         # `retrace list materials` shows the available materials
+)";
+
+/// Remaining keys of [array], and the first keys of [body].
+constexpr std::string_view kArrayTail = R"(# x_offset_mm = 0                 # flat margin at both ends in x
 # y_offset_mm = 0
 # extent = "finite"               # "infinite" is one periodic cell, without x_length_mm and y_length_mm
 # partial_elements = "cut"        # elements are cut at the border; "omit" replaces them by flat back
@@ -68,7 +87,10 @@ constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # 
 [body]
 thickness_mm = 2.0                # thickness of the plate between the entrance face and the rims
 material = "PMMA"                 # `retrace list materials` shows the available materials
-# refractive_index = 1.4917       # takes precedence over the index of the material
+)";
+
+constexpr std::string_view kCommonTail =
+    R"(# refractive_index = 1.4917       # takes precedence over the index of the material
 # absorption_per_mm = 0           # Napierian, for power; takes precedence over the material
 
 [light]
@@ -124,16 +146,19 @@ std::span<const std::string_view> design_kinds() {
 }
 
 std::string design_template(std::string_view kind) {
-  if (kind == kTemplateKinds[0]) return std::string(kRtpHead).append(kCommonTail);
+  if (kind == kTemplateKinds[0]) return std::string(kRtpHead).append(kArrayTail).append(kCommonTail);
   if (kind == kTemplateKinds[1])
     return cube_corner_head("full cube corners with hexagonal apertures", "Hexagonal cube corners in a honeycomb",
                             "hexagonal", "honeycomb")
+        .append(kArrayTail)
         .append(kCommonTail);
   if (kind == kTemplateKinds[2])
     return cube_corner_head("cube corners with triangular apertures", "Triangular cube corners", "triangular",
                             "triangular")
+        .append(kArrayTail)
         .append(kCommonTail);
-  if (kind == kTemplateKinds[3]) return std::string(kRoundZoneLens);
+  if (kind == kTemplateKinds[3]) return std::string(kRoundHead).append(kCommonTail);
+  if (kind == kTemplateKinds[4]) return std::string(kRoundZoneLens);
   throw InputError(fmt::format("KIND must be one of {}, got {}", alternatives(kTemplateKinds), in_quotes(kind)));
 }
 

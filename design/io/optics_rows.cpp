@@ -7,6 +7,7 @@ using namespace schema;
 
 constexpr NumberRange kAtLeastZero{.low = 0.0};
 constexpr NumberRange kAngleError{.low = -300.0, .high = 300.0};
+constexpr NumberRange kAngleErrorArcsec{.low = 60.0 * kAngleError.low, .high = 60.0 * kAngleError.high};
 // Limits of heights and lengths. They are beyond the values of optical surfaces and keep squares and exponentials
 // finite.
 constexpr NumberRange kHeight{.low = 0.0, .high = 1e5};
@@ -35,7 +36,8 @@ constexpr Condition kThicknessOfOthers[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has no plate"), is_absent("part.mesh"),
     is_not("substrate.kind", kOffsetKind,
            "not allowed for substrate.kind = \"offset\", whose elements are substrate.wall_mm below the entrance "
-           "surface")};
+           "surface"),
+    is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has length_mm")};
 
 constexpr Condition kWithLayerIndex[] = {is_given("refractive_index")};
 constexpr Condition kIndexOfMaterial[] = {
@@ -182,7 +184,11 @@ constexpr Row kDetectorRows[] = {
 constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
                                        is(kKind, kRtp)};
 constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                      is(kKind, geometry::kCubeKinds)};
+                                      is(kKind, geometry::kCubeKindsOfDesigns)};
+constexpr Condition kArcsecOfCube[] = {
+    is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
+    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
+    is_absent("dihedral_error_arcmin", "not allowed together with dihedral_error_arcmin")};
 constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh)};
 constexpr Condition kModelOfMap[] = {is_given("height_map")};
 constexpr Condition kModelOfOthers[] = {is_absent("height_map")};
@@ -198,6 +204,9 @@ constexpr Row kSurfaceRows[] = {
      "Errors of the dihedral angles: one number for all dihedral edges, or a list of three numbers for the edges at "
      "the azimuths 0, 120 and 240 degrees.",
      kErrorOfCube, kZeroIsNone},
+    {"dihedral_error_arcsec", NumberOrNumbers{kAngleErrorArcsec}, kNone,
+     "Errors of the dihedral angles in arc seconds, instead of `dihedral_error_arcmin`. One number or three numbers.",
+     kArcsecOfCube},
     {"facet_tilt_arcmin", NumberOrNumbers{kAngleError}, 0.0,
      "Tilts of the facets; positive tilts open the element. A list with one number for each facet, or 0 for no tilts. "
      "Prisms: the facets towards -x and +x. Cube corners: the facets between the edges at 0 and 120, 120 and 240, 240 "

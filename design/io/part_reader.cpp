@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "core/schema/reader.h"
 #include "design/io/outline_reader.h"
+#include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/io/substrate_rows.h"
 
@@ -14,13 +16,26 @@ namespace {
 
 using geometry::Arrangement, geometry::PartSpec, schema::Document;
 
+geometry::RoundCube round_cube_of(const Document& document, const geometry::Cant& cant) {
+  geometry::RoundCube cube;
+  cube.diameter_mm = document.number("element.diameter_mm");
+  cube.cant = cant;
+  cube.chamfer_mm = document.number("element.chamfer_mm");
+  cube.recess_mm = document.number("element.recess_mm");
+  cube.mount_diameter_mm =
+      document.number_if("element.mount_diameter_mm").value_or(cube.recess_mm > 0.0 ? cube.diameter_mm : 0.0);
+  if (has_outline(document)) cube.outline = std::make_shared<const geometry::PlanRegion>(read_outline(document));
+  return cube;
+}
+
 geometry::Element element_of(const Document& document) {
   const std::string kind = document.text("element.kind");
   if (kind == "rtp")
     return geometry::RtpElement{document.number("element.base_mm"), document.number("element.width_mm"),
                                 document.number("element.apex_angle_deg")};
-  const double aperture_mm = document.number("element.aperture_mm");
   const geometry::Cant cant{document.number("element.cant_deg"), document.number("element.cant_azimuth_deg")};
+  if (kind == "round_icc") return round_cube_of(document, cant);
+  const double aperture_mm = document.number("element.aperture_mm");
   if (kind == "hexagonal_icc") return geometry::HexagonalCube{aperture_mm, cant};
   return geometry::TriangularCube{aperture_mm, cant};
 }
@@ -33,7 +48,10 @@ Arrangement arrangement_of(const std::string& word) {
 
 void read_angle_errors(const Document& document, PartSpec& part) {
   auto& [dihedral, tilt] = part.angle_errors;
-  const std::vector<double> errors = document.numbers("surface.dihedral_error_arcmin");
+  const bool is_arcsec = document.has(kDihedralErrorArcsec);
+  std::vector<double> errors = document.numbers(is_arcsec ? kDihedralErrorArcsec : kDihedralErrorArcmin);
+  if (is_arcsec)
+    for (double& error : errors) error /= 60.0;
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
   for (std::size_t k = 0; k < (is_prism ? 1 : 3); ++k) dihedral[k] = errors[std::min(k, errors.size() - 1)];
   const std::vector<double> tilts = document.numbers("surface.facet_tilt_arcmin");
@@ -61,6 +79,16 @@ geometry::Scratch scratch_of(const Document& document, const std::string& entry)
   return scratch;
 }
 
+/// Returns the thickness of the plate between the face of a round cube corner and z = 0, which is at the highest points
+/// of its nominal facets. Without a length, it is the minimum thickness.
+double plate_of_round_cube_mm(const Document& document, const PartSpec& part) {
+  const double depth_mm = geometry::element_depth_mm(part.element, part.angle_errors);
+  if (const auto length_mm = document.number_if("element.length_mm")) return *length_mm - depth_mm;
+  if (const auto edge_mm = document.number_if("element.edge_length_mm"))
+    return *edge_mm / std::numbers::sqrt3 - depth_mm;
+  return min_thickness_mm(part);
+}
+
 /// Sets the outline of an array, and sets the size of the array to the bounding box of the outline.
 void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
   const auto outline = std::make_shared<const geometry::PlanRegion>(read_outline(document));
@@ -74,6 +102,13 @@ void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
 
 bool has_elements(const Document& document) {
   return !document.has("part.mesh") && !document.has("part.plate_mm") && document.text("element.kind") != "ball";
+}
+
+double min_thickness_mm(const PartSpec& part) {
+  constexpr double kMinPlateMm = 1e-6;
+  const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
+  const bool is_round = std::holds_alternative<geometry::RoundCube>(part.element);
+  return is_round || top_mm > 0.0 ? top_mm + kMinPlateMm : 0.0;
 }
 
 PartSpec read_array(const Document& document) {
@@ -91,7 +126,8 @@ PartSpec read_array(const Document& document) {
   read("array.y_offset_mm", part.array.y_offset_mm);
   read("array.x_gap_mm", part.array.x_gap_mm);
   read("array.y_gap_mm", part.array.y_gap_mm);
-  if (has_outline(document)) read_outline_into(document, part.array);
+  if (has_outline(document) && !std::holds_alternative<geometry::RoundCube>(part.element))
+    read_outline_into(document, part.array);
   part.array.partial_elements = document.choice<geometry::PartialElements>("array.partial_elements");
   if (part.array.arrangement != Arrangement::offset) return part;
   part.array.shifted_rows = document.choice<geometry::RowParity>("array.shifted_rows");
@@ -112,6 +148,8 @@ PartSpec read_part(const Document& document) {
   // find_offset() determines the thickness of the part.
   part.thickness_mm =
       document.number_if("body.thickness_mm").value_or(document.number_if("substrate.wall_mm").value_or(0.0));
+  if (std::holds_alternative<geometry::RoundCube>(part.element))
+    part.thickness_mm = plate_of_round_cube_mm(document, part);
   return part;
 }
 

@@ -2,6 +2,8 @@
 
 // Reads the shape of a design from its document: elements with their array, or balls.
 
+#include <string_view>
+
 #include "core/schema/document.h"
 #include "geometry/elements/part_spec.h"
 #include "raytrace/balls/ball_layer.h"
@@ -10,6 +12,13 @@ namespace retrace::design {
 
 /// Returns true if the design is an array of elements, and not a mesh, a plate or balls.
 bool has_elements(const schema::Document& document);
+
+/// Keys of the errors of dihedral angles. A design contains at most one of them.
+inline constexpr std::string_view kDihedralErrorArcmin = "surface.dihedral_error_arcmin";
+inline constexpr std::string_view kDihedralErrorArcsec = "surface.dihedral_error_arcsec";
+
+/// Returns the minimum thickness of the plate, which covers the highest points of the elements.
+double min_thickness_mm(const geometry::PartSpec& part);
 
 /// Reads the elements and the array of a design, without errors, edges and base.
 geometry::PartSpec read_array(const schema::Document& document);

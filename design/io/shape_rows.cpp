@@ -22,17 +22,26 @@ constexpr Condition kArrayOfNoBall =
     is_not(kKind, kBall,
            "not allowed for element.kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
 
+constexpr Condition kNotRound =
+    is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm");
+
 constexpr Condition kPrismOnly[] = {
-    kElementOfNoBall, is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
+    kElementOfNoBall, kNotRound,
+    is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
-    kElementOfNoBall,
+    kElementOfNoBall, kNotRound,
     is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKinds, "only allowed for cube corners")};
+constexpr Condition kCantOnly[] = {kElementOfNoBall,
+                                   is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
+constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
+constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
+                                         is_absent("length_mm", "not allowed together with length_mm")};
 
 constexpr Row kElementRows[] = {
     {"kind", Word{geometry::kElementKinds}, kRequired,
-     "Kind of the elements: prisms, hexagonal or triangular cube corners, or balls."},
+     "Kind of the elements: prisms, hexagonal or triangular cube corners, a single cube corner with a circular face "
+     "(`\"round_icc\"`), or balls."},
     where(kSizeKeys.base_mm, kPrismOnly),
     where(kSizeKeys.width_mm, kPrismOnly),
     where(geometry::kApexAngleKey, kPrismOnly),
@@ -44,6 +53,32 @@ constexpr Row kElementRows[] = {
     {"cant_azimuth_deg", Number{kAzimuth}, 0.0,
      "Azimuth of the direction towards which the axis is tilted, measured from +x towards +y.", kCantOnly, kZeroIsNone},
     {"diameter_mm", kSize, kRequired, "Diameter of the balls.", kBallOnly},
+    {"diameter_mm", kSize, kRequired,
+     "Diameter of the circular face. The circle is replaced by a polygon of the same area with 180 sides.", kRoundOnly},
+    {"length_mm", kSize,
+     Computed{
+         "the minimum length, at which the facets reach the rim of the face: `diameter_mm` / sqrt(2) + 1e-6 mm, and "
+         "more if angle errors or a cant raise the facets"},
+     "Length from the apex to the face.", kRoundOnly},
+    {"edge_length_mm", kSize, Computed{"sqrt(3) times the length"},
+     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, before it was made "
+     "round. "
+     "It is sqrt(3) times the length and replaces `length_mm`.",
+     kEdgeLengthOnly},
+    {"chamfer_mm", kGap, 0.0,
+     "Width of the chamfer at the rim of the face, in plan. Light that meets the chamfer from outside or from inside "
+     "is "
+     "stopped.",
+     kRoundOnly},
+    {"recess_mm", kGap, 0.0,
+     "Depth of the face below the edge of its mount. The edge stops light on its way to the face and on its way back.",
+     kRoundOnly},
+    {"mount_diameter_mm", kSize, Computed{"`diameter_mm` with a recess, otherwise there is no mount"},
+     "Diameter of the circular edge of the mount. It is centred on the face.", kRoundOnly},
+    {"hollow", Flag{}, false,
+     "true: three mirrors without a body, so that the refractive index is 1 inside and outside. The mirrors need "
+     "`idealisation.facets` = `\"mirror\"`, a `body.facet_coating` or an opaque layer in `coating.facets`.",
+     kRoundOnly},
     {"mirror_offset_mm", kGap, Computed{"0: the back of the ball itself is coated"},
      "Distance from the ball to the mirror behind it. The mirror is a spherical bowl with the same centre as the ball. "
      "A value above 0 needs a mirror: aluminium, an opaque layer, or an ideal mirror.",
@@ -58,6 +93,7 @@ constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
 constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
 constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
 constexpr Condition kOfBalls[] = {is(kKind, kBall)};
+constexpr Condition kOfRound[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
 constexpr Condition kOfPacked[] = {is(kArrangement, kPacked)};
 constexpr Condition kOfOthers[] = {is_not(kArrangement, kBallArrangements)};
@@ -90,6 +126,8 @@ constexpr Row kArrayRows[] = {
      "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kSingle}, "single",
+     "Arrangement of the element. A cube corner with a circular face is single.", kOfRound},
     {"arrangement", Word{kBallArrangements}, "packed",
      "Arrangement of the balls. `\"packed\"` is an infinite layer with hexagonal packing.", kOfBalls},
     {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},

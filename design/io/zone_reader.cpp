@@ -33,7 +33,7 @@ constexpr double kFractionRounding = 1e-6;
 constexpr double kRounding = 1e-9;
 
 // Keys that may differ between zones. A table name with a dot stands for all keys of the table.
-constexpr std::array<std::string_view, 16> kOfZones = {"element.",
+constexpr std::array<std::string_view, 17> kOfZones = {"element.",
                                                        "array.arrangement",
                                                        "array.partial_elements",
                                                        "array.x_gap_mm",
@@ -41,6 +41,7 @@ constexpr std::array<std::string_view, 16> kOfZones = {"element.",
                                                        "array.overlap_percent",
                                                        "array.shifted_rows",
                                                        "surface.dihedral_error_arcmin",
+                                                       "surface.dihedral_error_arcsec",
                                                        "surface.facet_tilt_arcmin",
                                                        "surface.angle_error_sigma_arcmin",
                                                        "surface.angle_error_seed",

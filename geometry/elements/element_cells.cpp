@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/outline/plan_region.h"
 
 namespace retrace::geometry {
 namespace {
@@ -189,25 +190,49 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
   return cell;
 }
 
+Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
+  // Number of sides. It is a multiple of 12, so that the polygon has the symmetry of a cube corner.
+  constexpr int kSides = 180;
+  constexpr double kStepDeg = 360.0 / kSides;
+  const double step_rad = 2.0 * std::numbers::pi / kSides;
+  const double radius_mm = 0.5 * diameter_mm * std::sqrt(step_rad / std::sin(step_rad));
+  Polygon polygon;
+  for (int k = 0; k < kSides; ++k) polygon.push_back(rim_point(centre, radius_mm, (k + 0.5) * kStepDeg));
+  return polygon;
+}
+
+Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre) {
+  constexpr double kSliver = 1e-9;  // relative to the diameter
+  Polygon outline = polygon_of_circle(centre, element.diameter_mm);
+  if (element.outline)
+    outline = clip(outline, moved(element.outline->hull, centre - element.outline->box_mm.centre()),
+                   kSliver * element.diameter_mm);
+  return cube_cell(std::move(outline), centre, -2.0 * rise_of_dihedral_edge(element.diameter_mm),
+                   cube_slopes(errors, element.cant));
+}
+
 Cell element_in_place_of(const Cell& cell, const Element& element, const AngleErrors& errors) {
   return std::visit(
       Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, cell.at_mm, cell.rotated); },
                  [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, cell.at_mm); },
-                 [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, cell.at_mm, cell.rotated); }},
+                 [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, cell.at_mm, cell.rotated); },
+                 [&](const RoundCube& e) { return round_cube_cell(e, errors, cell.at_mm); }},
       element);
 }
 
 Cell element_cell(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, Vec2::Zero()); },
                                [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, Vec2::Zero()); },
-                               [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, Vec2::Zero()); }},
+                               [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, Vec2::Zero()); },
+                               [&](const RoundCube& e) { return round_cube_cell(e, errors, Vec2::Zero()); }},
                     element);
 }
 
 double element_depth_mm(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_depth(e, errors); },
                                [](const HexagonalCube& e) { return 2.0 * rise_of_dihedral_edge(e.aperture_mm); },
-                               [](const TriangularCube& e) { return rise_of_dihedral_edge(e.aperture_mm); }},
+                               [](const TriangularCube& e) { return rise_of_dihedral_edge(e.aperture_mm); },
+                               [](const RoundCube& e) { return 2.0 * rise_of_dihedral_edge(e.diameter_mm); }},
                     element);
 }
 

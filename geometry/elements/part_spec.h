@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -43,7 +44,21 @@ struct TriangularCube {
   Cant cant = {};
 };
 
-using Element = std::variant<RtpElement, HexagonalCube, TriangularCube>;
+/// Single cube corner with a circular face, for ranging and surveying. It is a full cube corner that is cut by a
+/// cylinder about its axis. The highest points of the nominal facets inside the circle are on z = 0.
+struct RoundCube {
+  double diameter_mm = 0.0;  ///< diameter of the face; > 0
+  Cant cant = {};
+  double chamfer_mm = 0.0;  ///< width of the chamfer at the rim of the face, in plan; light that meets it is stopped
+  double recess_mm = 0.0;   ///< distance from the face to the edge of the mount, >= 0
+  /// Diameter of the circular edge of the mount. Light that crosses the plane of the edge outside of it is stopped. 0:
+  /// there is no mount.
+  double mount_diameter_mm = 0.0;
+  /// Convex outline that also cuts the face, or null. The centre of its bounding box is above the apex.
+  std::shared_ptr<const PlanRegion> outline = {};
+};
+
+using Element = std::variant<RtpElement, HexagonalCube, TriangularCube, RoundCube>;
 
 /// Errors of the facets' angles, in arc minutes. Facets are rotated about the root or apex, which does not move. The
 /// element's outline in plan stays nominal, so its rims end above or below z = 0. If both kinds of error are given,

@@ -10,9 +10,14 @@
 
 namespace retrace::geometry {
 
-/// Words of `element.kind`, in the order of the alternatives of Element. Only designs allow balls.
-inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "ball"};
+/// Words of `element.kind`, in the order of the alternatives of Element. Only designs allow round cube corners and
+/// balls.
+inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ball"};
 inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
+
+inline constexpr auto kRoundCube = schema::only(kElementKinds, "round_icc");
+/// Cube corners, with the kinds that only designs allow.
+inline constexpr auto kCubeKindsOfDesigns = schema::only(kElementKinds, "hexagonal_icc", "round_icc");
 
 /// Words of `array.arrangement`, in the order of the enumerators of Arrangement.
 inline constexpr schema::Words kArrangementWords = {"single",  "aligned",   "offset",

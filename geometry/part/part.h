@@ -37,6 +37,12 @@ struct LatticeRegion {
   std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles to each other
 };
 
+/// Opening in a plane above the entrance face, such as the edge of a mount.
+struct FaceOpening {
+  Polygon outline;         ///< convex, counter-clockwise
+  double height_mm = 0.0;  ///< height of the plane above the entrance face, >= 0
+};
+
 /// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the
 /// elements below the plate. The rims of the elements are on z = 0 unless errors of angle or cant move them.
 /// The sides of a finite part are vertical walls over a convex outline, and the back surface bounds it at the bottom.
@@ -59,6 +65,11 @@ struct Part {
   /// the outline is the entrance face. The sides that are not on the hull are then facets of the back surface, with the
   /// role `side`, and `top_mm` is the height of the entrance face.
   std::vector<Polygon> entrance_pieces;
+  /// Convex area of the entrance face inside a chamfer. Light that meets the face outside of it is stopped. Empty: the
+  /// whole face is clear.
+  Polygon clear_face;
+  /// Opening through which light must pass on its way to the entrance face and on its way back
+  std::optional<FaceOpening> mount;
   /// Period of an infinite part. The surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y.
   std::optional<Vec2> period_mm;
   int periods_beyond = 0;  ///< number of additional periods of an infinite part on each side

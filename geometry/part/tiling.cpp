@@ -420,6 +420,14 @@ class Tiler {
   double covered_mm2_ = 0.0;
 };
 
+/// Adds the chamfer and the mount of a round cube corner.
+/// \param apex_mm position of the apex in plan
+void add_stops(Part& part, const RoundCube& cube, const Vec2& apex_mm) {
+  if (cube.chamfer_mm > 0.0) part.clear_face = polygon_of_circle(apex_mm, cube.diameter_mm - 2.0 * cube.chamfer_mm);
+  if (cube.mount_diameter_mm > 0.0)
+    part.mount = FaceOpening{polygon_of_circle(apex_mm, cube.mount_diameter_mm), cube.recess_mm};
+}
+
 }  // namespace
 
 void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,
@@ -463,6 +471,8 @@ void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm) {
     if (own != nullptr && !own->planes.empty()) cell = cell_with_planes(cell, *own, place);
   }
   cell = finished_cell(cell, part.spec);
+  if (const auto* const round = std::get_if<RoundCube>(&part.spec.element))
+    add_stops(part, *round, origin_mm - bounding_box(cell.outline).lower);
   move_facets(cell, -bounding_box(cell.outline).lower, 0.0);
   std::vector<Tile> tiles;
   for (CellFacet& facet : cell.facets)

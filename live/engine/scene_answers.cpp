@@ -30,6 +30,7 @@ std::string_view event_name(PathEvent event) {
     case PathEvent::enters_again: return "enters_again";
     case PathEvent::leaves_side: return "leaves_side";
     case PathEvent::escapes: return "escapes";
+    case PathEvent::stopped: return "stopped";
     case PathEvent::ends: break;
   }
   return "ends";
@@ -66,7 +67,7 @@ Json plan_json(const geometry::Part& part) {
 std::optional<double> critical_deg(const raytrace::Optics& optics, const raytrace::PathStep& step) {
   const bool is_back = step.role != geometry::FacetRole::entrance && step.role != geometry::FacetRole::side;
   if (step.event == PathEvent::enters || step.event == PathEvent::enters_again || step.event == PathEvent::escapes ||
-      step.event == PathEvent::ends)
+      step.event == PathEvent::stopped || step.event == PathEvent::ends)
     return std::nullopt;
   const double ratio = is_back ? optics.back_index / optics.index : 1.0 / optics.index;
   return ratio < 1.0 ? std::optional(Angle::from_rad(std::asin(ratio)).deg()) : std::nullopt;

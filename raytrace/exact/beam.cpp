@@ -103,6 +103,15 @@ Corners cut(const Corners& corners, const Plane& plane) {
   return kept;
 }
 
+Corners cut_to_outline(Corners corners, const geometry::Polygon& outline) {
+  for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
+    const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
+    const Vec3 inward(-along.y(), along.x(), 0.0);
+    corners = cut(corners, {inward, inward.head<2>().dot(outline[k])});
+  }
+  return corners;
+}
+
 double mean_transmission(const Corners& corners, const PathLength& path_length, double absorption_per_mm) {
   if (absorption_per_mm <= 0.0) return 1.0;
   const auto depth = [&](std::size_t k) { return absorption_per_mm * path_length.at(corners[k]); };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raytrace/exact/beam_reach.h"
+#include "raytrace/exact/lit_face.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -45,16 +46,6 @@ std::vector<Span> spans(double lower, double upper, double period, int steps) {
     if (!whole.shifts.empty()) all.push_back(std::move(whole));
   }
   return all;
-}
-
-/// Returns the portion of a polygon whose projection along z is inside a convex outline.
-Corners within(Corners corners, const geometry::Polygon& outline) {
-  for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
-    const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
-    const Vec3 inward(-along.y(), along.x(), 0.0);
-    corners = cut(corners, {inward, inward.head<2>().dot(outline[k])});
-  }
-  return corners;
 }
 
 /// Returns the portion of a polygon between two values of the coordinate along an axis.
@@ -157,7 +148,8 @@ void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into)
 /// Divides the portion of a beam that is above one region of a part with zones (areas with different arrays).
 void divide_region(const PeriodicRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
   const auto add = [&](const geometry::Polygon& tile, InstanceOffsets places) {
-    into.add(within(within(into.whole().corners, tile), region.outline_mm()), std::move(places), number);
+    into.add(cut_to_outline(cut_to_outline(into.whole().corners, tile), region.outline_mm()), std::move(places),
+             number);
   };
   for (const PeriodicRegion::Tiles& tiles : region.tiles(most_step)) {
     if (!tiles.inner.empty()) add(tiles.first, tiles.inner);
@@ -245,6 +237,12 @@ double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& q
 
 void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue) {
   Beam whole = incident_beam(scene, entrance_outline(scene.part));
+  if (!scene.setup.stops.is_empty()) {
+    LitFace lit(scene);
+    if (lit.reached.empty()) return;
+    whole.corners = std::move(lit.reached);
+    whole.area_fraction = lit.reached_fraction;
+  }
   const double parts = parts_of_element(scene.part);
   if (scene.setup.infinite()) {
     if (scene.symmetry != nullptr) keep_half(*scene.symmetry, whole, queue);

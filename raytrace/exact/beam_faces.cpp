@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
+#include <limits>
 #include <utility>
 
 #include "raytrace/faces/textured_facet.h"
@@ -13,6 +14,8 @@ using geometry::FacetRole, surface_models::Lobe;
 
 // Maximum number of steps of a nearly horizontal beam between two interfaces.
 constexpr std::uint32_t kMaxLevelSteps = 1000;
+// Number of faces of the hull above which leave_hull() first discards those that a fragment does not meet.
+constexpr std::size_t kManyExits = 8;
 
 /// Returns the power of a fragment at the plane where the beam starts.
 double power_at_start(const BeamStep& step, const Fragment& fragment) {
@@ -107,6 +110,9 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
     step.record.add_to_ledger(beam, Account::side_exit, power_of(beam));
     return;
   }
+  const FaceStops& stops = step.scene.setup.stops;
+  if (is_entrance && stops.has_chamfer() && !step.record.keep_within(beam, stops.clear_face(), beam.light.power()))
+    return;
   const Vec3 against = -plane.normal;
   const double cos_incidence = plane.normal.dot(direction);
   const double ratio = role == FacetRole::border_wall ? optics.ratio_at_back(true) : optics.index;
@@ -152,6 +158,22 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
   };
   offer({Vec3::UnitZ(), setup.thickness_mm}, FacetRole::entrance);
   for (const auto& side : setup.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
+
+  // A plane is not met if the whole fragment reaches another plane earlier. A cylinder has many such planes.
+  double latest = std::numeric_limits<double>::infinity();
+  const auto range_of = [&](const Exit& exit) {
+    std::pair range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+    for (const Vec2& p : fragment.polygon) {
+      range.first = std::min(range.first, exit.distance.at(p));
+      range.second = std::max(range.second, exit.distance.at(p));
+    }
+    return range;
+  };
+  if (exits.size() > kManyExits) {
+    for (const Exit& exit : exits) latest = std::min(latest, range_of(exit).second);
+    const auto is_beyond = [&](const Exit& exit) { return range_of(exit).first > latest + merge_mm; };
+    exits.erase(std::remove_if(exits.begin(), exits.end(), is_beyond), exits.end());
+  }
 
   const double whole = area(fragment.polygon);
   double used = 0.0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "raytrace/exact/lit_face.h"
+
 namespace retrace::raytrace {
 
 BeamRecord::BeamRecord(const BeamScene& scene, BeamObserver observer)
@@ -22,6 +24,7 @@ void BeamRecord::scatter(const Beam& beam, const Plane& plane, double power) {
 }
 
 void BeamRecord::enter() {
+  if (!scene_.setup.stops.is_empty()) return enter_past_stops();
   const LightSetup::Entry& entry = scene_.setup.entry;
   tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
@@ -30,7 +33,47 @@ void BeamRecord::enter() {
   if (observer_ && entry.reflected.i > 0.0) observe_entrance_reflection();
 }
 
+/// Records the incident light that stops, the entrance face and its layers prevent from entering.
+void BeamRecord::enter_past_stops() {
+  const LightSetup::Entry& entry = scene_.setup.entry;
+  const LitFace lit(scene_);
+  tally_.other[Account::stopped] += (1.0 - lit.reached_fraction) * scene_.setup.incident.power() +
+                                    (lit.reached_fraction - lit.reflected_fraction) * entry.reflected.i;
+  tally_.other[Account::absorbed] += lit.reached_fraction * entry.absorbed;
+  tally_.entrance_reflected[entry.reflected_cone] += lit.reflected_fraction * entry.reflected;
+  if (!observer_ || !(entry.reflected.i > 0.0) || lit.reflected.empty()) return;
+  ReturnedBeam front = reflection_of_face();
+  for (const Vec3& p : lit.reflected) front.exit_polygon_mm.push_back(p.head<2>() + scene_.centre_mm);
+  front.stokes = lit.reflected_fraction * front.stokes;
+  front.efficiency *= lit.reflected_fraction;
+  observer_(front);
+}
+
+bool BeamRecord::keep_within(Beam& beam, const geometry::Polygon& area, double power) {
+  const double before = transmission_of(beam);
+  const double area_mm2 = horizontal_area(beam.corners);
+  Corners corners = cut_to_outline(beam.corners, area);
+  const double kept_mm2 = horizontal_area(corners);
+  if (kept_mm2 <= scene_.min_area) {
+    add_to_ledger(beam, Account::stopped, before * power);
+    return false;
+  }
+  beam.area_fraction *= kept_mm2 / area_mm2;
+  beam.transmission = mean_transmission(corners, beam.path_length, scene_.setup.optics.absorption_per_mm);
+  beam.corners = std::move(corners);
+  add_to_ledger(beam, Account::stopped, (before - transmission_of(beam)) * power);
+  return true;
+}
+
 void BeamRecord::leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction) {
+  if (!scene_.setup.stops.has_mount()) return record_leaving(beam, light, direction);
+  Beam passing = beam;
+  if (keep_within(passing, scene_.setup.stops.face_through_mount(direction), light.power()))
+    record_leaving(passing, light, direction);
+}
+
+/// Records light that has left through the entrance face and passed the mount.
+void BeamRecord::record_leaving(const Beam& beam, CoherentLight light, const Vec3& direction) {
   tally_.add(scene_.setup.pass_shells_outward(light, direction), Account::returned_elsewhere,
              beam.instance_count() * transmission_of(beam));
   const std::size_t cone = scene_.setup.cone_of(direction);
@@ -74,7 +117,8 @@ ReturnedBeam BeamRecord::returned_beam(const Beam& beam, CoherentLight light, co
   return returned;
 }
 
-void BeamRecord::observe_entrance_reflection() const {
+/// Returns the description of the light that the entrance face reflects, without its polygon.
+ReturnedBeam BeamRecord::reflection_of_face() const {
   const LightSetup::Entry& entry = scene_.setup.entry;
   ReturnedBeam front;
   front.direction = entry.reflected_direction;
@@ -84,6 +128,11 @@ void BeamRecord::observe_entrance_reflection() const {
   front.jones = entry.reflected_jones;
   front.transmission = 1.0;
   front.centre_mm = scene_.centre_mm;
+  return front;
+}
+
+void BeamRecord::observe_entrance_reflection() const {
+  const ReturnedBeam front = reflection_of_face();
   if (scene_.setup.infinite()) return observer_(front);
   for (const geometry::Polygon& piece : geometry::entrance_polygons(scene_.part)) {
     // The power that a polygon of the face reflects is proportional to its area.

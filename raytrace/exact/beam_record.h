@@ -41,6 +41,10 @@ class BeamRecord {
   /// Records light that leaves through the entrance face.
   /// \param direction direction of the light in air
   void leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction);
+  /// Reduces a beam on the entrance face to its portion within a convex area, which is relative to the centre of the
+  /// face. The light of the other portion is added to `stopped`. Returns false if no portion remains.
+  /// \param power power of the light, divided by transmission_of(beam)
+  bool keep_within(Beam& beam, const geometry::Polygon& area, double power);
   /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.
   void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.instance_count() * power_of(beam); }
 
@@ -50,7 +54,10 @@ class BeamRecord {
 
  private:
   ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
+  void enter_past_stops();
+  ReturnedBeam reflection_of_face() const;
   void observe_entrance_reflection() const;
+  void record_leaving(const Beam& beam, CoherentLight light, const Vec3& direction);
 
   BeamScene scene_;
   BeamObserver observer_;

@@ -20,10 +20,11 @@ enum class Account : std::size_t {
   truncated,  ///< not traced further: power below the cut-off, or too many interfaces
   lost,       ///< missed every face although it was inside the part; 0 unless there is a defect
   /// reflected at surfaces of shells (separate lenses in front of the part), and not traced further; 0 without shells
-  shell_reflected
+  shell_reflected,
+  stopped  ///< stopped by the mount or by the chamfer of the face; 0 without them
 };
 
-inline constexpr std::size_t kAccountCount = 10;
+inline constexpr std::size_t kAccountCount = 11;
 
 /// Maximum `lost` power of a valid run.
 inline constexpr double kLostLimit = 1e-9;
@@ -31,11 +32,12 @@ inline constexpr double kLostLimit = 1e-9;
 /// Names of the accounts in files, in the order of the enumeration.
 inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
-    "absorbed",       "truncated",      "lost",          "shell_reflected"};
+    "absorbed",       "truncated",      "lost",          "shell_reflected",    "stopped"};
 
-/// Returns true if result files list this account. They list all accounts, except `shell_reflected` if its power is 0.
+/// Returns true if result files list this account. They list all accounts, except `shell_reflected` and `stopped` if
+/// their power is 0.
 constexpr bool is_listed(Account account, double power) {
-  return account != Account::shell_reflected || power != 0.0;
+  return (account != Account::shell_reflected && account != Account::stopped) || power != 0.0;
 }
 
 /// Power by account, as a fraction of the incident power.

@@ -159,7 +159,11 @@ Vec3 direction_to_source(const Illumination& illumination) {
 
 LightSetup::LightSetup(const geometry::Part& part, const Vec2& centre_mm, const Optics& how,
                        const Illumination& illumination, const std::vector<double>& cones_deg)
-    : optics(how), thickness_mm(part.thickness_mm), depth_mm(part.element_depth_mm), top_mm(part.top_mm) {
+    : optics(how),
+      thickness_mm(part.thickness_mm),
+      depth_mm(part.element_depth_mm),
+      top_mm(part.top_mm),
+      stops(part, centre_mm) {
   to_source = direction_to_source(illumination);
   CoherentLight arriving;
   static_cast<Light&>(arriving) = light_of_beam(illumination.stokes, to_source);

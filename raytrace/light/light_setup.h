@@ -9,6 +9,7 @@
 #include "geometry/part/part.h"
 #include "raytrace/light/coherent_light.h"
 #include "raytrace/light/direction_score.h"
+#include "raytrace/light/face_stops.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/light/optics.h"
 
@@ -31,6 +32,7 @@ struct LightSetup {
   double depth_mm = 0.0;  ///< the back surface is in the range -depth_mm <= z <= top_mm
   double top_mm = 0.0;
   std::vector<Side> sides;  ///< empty for an infinite part
+  FaceStops stops;          ///< chamfer of the entrance face and mount in front of it
   Vec3 to_source = Vec3::UnitZ();
   /// Light of the incident beam, which travels along -to_source. If all shells are plane-parallel, this is the light
   /// behind the shells. Otherwise, it is the light in front of them.

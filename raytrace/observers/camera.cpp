@@ -164,7 +164,7 @@ struct CameraTracer::Impl {
     }
     const PathSetup& any = setups.front();
     const double below = any.depth_mm + any.clearance_mm;
-    const double top = entrance_face ? entrance_face->highest_mm() : any.thickness_mm;
+    const double top = std::max(entrance_face ? entrance_face->highest_mm() : any.thickness_mm, any.stops.top_mm());
     middle = {0.0, 0.0, 0.5 * (top - below)};
     double reach2 = 0.0;
     for (const Vec2& corner : p.outline) reach2 = std::max(reach2, (corner - centre_mm).squaredNorm());
@@ -381,6 +381,10 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
     block.launch({contact.local, start, number}, wavelength, {seed, kCameraChoiceStream}, point, pixel);
     return;
   }
+  const FaceStops& stops = setups[wavelength].stops;
+  if (contact.kind == Contact::Kind::face &&
+      (!stops.is_clear(contact.local.head<2>()) || !stops.passes_mount(contact.local, direction)))
+    return;
   if (path.shows_part()) {
     const bool is_side = contact.kind == Contact::Kind::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
@@ -394,7 +398,7 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
       start.light = start.light.transmitted(f);
       if (is_side)
         block.accumulator.on_transmission(number, front.power());
-      else
+      else if (stops.passes_mount(contact.local, mirrored(direction, normal)))
         block.accumulator.on_front_reflection(number, contact.world, mirrored(direction, normal), front.power());
     }
   }

@@ -30,9 +30,11 @@ class Follower {
     if (entrance_face_ != nullptr) {
       position_.z() = entrance_face_->beam_height_mm(position_.head<2>());
       path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
+      if (!setup_.stops.passes_mount(position_, setup_.to_source)) return stop_before_face();
       if (!enter_curved_face()) return pass_beside();
     } else {
       path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
+      if (!setup_.stops.passes_both_ways(position_, setup_.to_source, setup_.to_source)) return stop_before_face();
       direction_ = setup_.entry.direction;
       light_ = setup_.entry.light;
       add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});
@@ -77,6 +79,21 @@ class Follower {
     direction_ = refracted(direction_, met->normal, 1.0 / setup_.optics.index, cosine, f.cos_refracted);
     add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(cosine), light_.power()});
     return true;
+  }
+
+  /// Adds the end of light at the chamfer of the face or, if it passes the chamfer, at the edge of the mount.
+  void stop(const Vec3& direction) {
+    if (setup_.stops.is_clear(position_.head<2>()))
+      position_ += (setup_.stops.top_mm() - position_.z()) / direction.z() * direction;
+    add({PathEvent::stopped, geometry::FacetRole::entrance, position_, 0.0, 0.0});
+    light_.scale(0.0);
+    is_done_ = true;
+  }
+
+  /// Ends the path of light that does not reach the face.
+  LightPath stop_before_face() {
+    stop(setup_.to_source);
+    return std::move(path_);
   }
 
   /// Ends the path of light that passes beside the part.
@@ -170,6 +187,10 @@ class Follower {
   bool meet(const Vec3& out, geometry::FacetRole role, double ratio) {
     const double cosine = out.dot(direction_);
     const bool is_entrance = role == geometry::FacetRole::entrance;
+    if (is_entrance && !setup_.stops.is_clear(position_.head<2>())) {
+      stop(direction_);
+      return false;
+    }
     return split(out, role,
                  is_entrance ? fresnel_at_entrance(setup_.optics, true, cosine) : materials::fresnel(ratio, cosine),
                  ratio);
@@ -193,6 +214,10 @@ class Follower {
     light_ = transmitted;
     direction_ = refracted(direction_, -out, ratio, cosine, f.cos_refracted);
     if (role == geometry::FacetRole::side) return end(PathEvent::leaves_side, role, deg(cosine));
+    if (role == geometry::FacetRole::entrance && !setup_.stops.passes_mount(position_, direction_)) {
+      stop(direction_);
+      return false;
+    }
     if (role == geometry::FacetRole::entrance) {
       path_.deviation_deg = deg(direction_.dot(setup_.to_source));
       path_.is_returned = setup_.cone_of(direction_) == 0;

@@ -14,7 +14,10 @@ void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
   state.light = setup_.incident;
   state.inside = false;
   state.above = true;
-  pending_.push_back(state);
+  if (setup_.stops.passes_mount(state.position, setup_.to_source))
+    pending_.push_back(state);
+  else
+    finish(state, Account::stopped);
 }
 
 /// Returns the distance to the curved entrance face from inside, or `limit` if the path does not meet it before.
@@ -43,6 +46,7 @@ bool PathWalker::advance_above(State& state) {
 }
 
 bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal) {
+  if (is_at_stop(state.position)) return finish(state, Account::stopped);
   const bool from_inside = state.inside;
   const bool is_first = state.entrance_source == FacetRef{} && !from_inside;
   const Vec3 against = from_inside ? Vec3(-normal) : normal;

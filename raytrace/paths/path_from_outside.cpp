@@ -43,6 +43,7 @@ bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std
   static_cast<Ray&>(state) = ray;
   state.position = position;
   state.inside = false;
+  is_shadowed_ = setup_.stops.is_in_front_of_mount(position) && !setup_.stops.passes_mount(position, ray.direction);
   const ShellEntry entry = enter_shells(state);
   if (entry == ShellEntry::stopped) return true;
   const bool meets = setup_.infinite() ? arrive_at_sheet(state) : arrive_at_body(state);
@@ -114,6 +115,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
     state.above = true;
     const auto met = setup_.entrance_face->first_hit({state.position, state.direction, {}, false, reach_mm});
     if (!met) return false;
+    if (is_shadowed_) return stop_at_mount(state);
     arrival_ = Arrival::entrance;
     state.position += met->hit.t * state.direction;
     if (meet_entrance_face(state, met->hit, met->normal)) pending_.push_back(state);
@@ -128,13 +130,24 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
   // Light beside the polygons of the entrance face enters a notch or a hole.
   if (!setup_.entrance_pieces.empty() && !setup_.is_over_piece(state.position.head<2>(), -tolerance_mm))
     return arrive_from_below(state);
-  return arrive_at_entrance(state);
+  return is_shadowed_ ? stop_at_mount(state) : arrive_at_entrance(state);
+}
+
+/// Ends the path of light that the mount keeps from the entrance face.
+bool PathWalker::stop_at_mount(State& state) {
+  arrival_ = Arrival::entrance;
+  finish(state, Account::stopped);
+  return true;
 }
 
 /// Processes light that meets the plane entrance face from the air.
 bool PathWalker::arrive_at_entrance(State& state) {
   ++tally_.segments;
   arrival_ = Arrival::entrance;
+  if (is_at_stop(state.position)) {
+    finish(state, Account::stopped);
+    return true;
+  }
   if (setup_.contaminated_entrance) {
     enter_contaminated(state);
     return true;

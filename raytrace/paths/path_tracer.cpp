@@ -129,15 +129,23 @@ void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
+  if (is_at_stop(state.position) || !setup_.stops.passes_mount(state.position, setup_.to_source)) {
+    tally_.other[Account::stopped] += setup_.incident.power();
+    return;
+  }
   if (setup_.contaminated_entrance) {
     static_cast<Ray&>(state) = {-setup_.to_source, setup_.incident, false, false};
     return enter_contaminated(state);
   }
   const LightSetup::Entry& entry = setup_.entry;
-  tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
   tally_.add(entry.reflected_losses, Account::returned_elsewhere);
-  if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, entry.reflected.i, tally_.score);
+  if (setup_.stops.passes_mount(state.position, entry.reflected_direction)) {
+    tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
+    if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, entry.reflected.i, tally_.score);
+  } else {
+    tally_.other[Account::stopped] += entry.reflected.i;
+  }
   state.direction = entry.direction;
   state.light = entry.light;
   pending_.push_back(state);
@@ -368,6 +376,7 @@ bool PathWalker::is_over_part(const Vec3& position) const {
 
 bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
+  if (is_at_stop(state.position)) return finish(state, Account::stopped);
   if (setup_.contaminated_entrance) return meet_contaminated_entrance(state);
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
@@ -392,9 +401,13 @@ bool PathWalker::meet_entrance(State& state) {
   return branch != Branch::transmitted;
 }
 
-/// Traces light from the entrance face through all shells, and records it if it passes them.
+/// Traces light from the entrance face past the mount and through all shells, and records it if it passes them.
 /// \param record member function that records the light
 void PathWalker::record_beyond_shells(Record record, const State& state, const Light& light, const Vec3& direction) {
+  if (!setup_.stops.passes_mount(state.position, direction)) {
+    tally_.other[Account::stopped] += light.power();
+    return;
+  }
   if (!setup_.optics.shells.empty()) {
     const std::optional<State> outside = beyond_shells(state, light, direction);
     if (outside) (this->*record)(*outside, outside->light, outside->direction);

@@ -144,6 +144,7 @@ class PathWalker {
   bool meet_contaminated_entrance(const State& state);
   const EntranceScatter& scatter_at_face(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
+  bool is_at_stop(const Vec3& position) const { return !setup_.stops.is_clear(position.head<2>()); }
   /// Member function that records light outside all shells.
   using Record = void (PathWalker::*)(const State& state, const Light& light, const Vec3& direction);
   void record_beyond_shells(Record record, const State& state, const Light& light, const Vec3& direction);
@@ -184,6 +185,7 @@ class PathWalker {
   bool arrive_at_sheet(State& state);
   bool arrive_from_above(State& state, double reach_mm, double tolerance_mm);
   bool arrive_at_entrance(State& state);
+  bool stop_at_mount(State& state);
   bool arrive_at_side(State& state, const Vec3& normal);
   bool arrive_from_below(State& state);
   bool begin_inside(State& state, double tolerance_mm);
@@ -194,6 +196,7 @@ class PathWalker {
   std::vector<State> pending_;
   EntranceScatter scatter_;
   Vec3 to_source_ = Vec3::UnitZ();         ///< direction opposite to the light that is traced
+  bool is_shadowed_ = false;               ///< true if the mount stops the light of launch() on its way to the face
   bool splits_at_first_interface_ = true;  ///< true if both branches of the first interface are traced at any power
   Arrival arrival_ = Arrival::entrance;
   RandomKey key_;

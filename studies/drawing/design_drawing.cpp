@@ -63,8 +63,10 @@ void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
   const bool hexagonal = std::holds_alternative<geometry::HexagonalCube>(spec.element);
   panel.circle_radius_mm = radius;
   panel.circle_mm = apex;
-  panel.dimensions.push_back(
-      {Side::below, apex - Vec2(radius, 0.0), apex + Vec2(radius, 0.0), "aperture", a.aperture_mm});
+  const bool is_round = std::holds_alternative<geometry::RoundCube>(spec.element);
+  panel.dimensions.push_back({Side::below, apex - Vec2(radius, 0.0), apex + Vec2(radius, 0.0),
+                              is_round ? "diameter" : "aperture", a.aperture_mm});
+  if (is_round) return;
   const double half_side = 0.5 * std::numbers::sqrt3 * radius;
   if (hexagonal) {
     add(panel.dimensions, Side::left, apex + Vec2(-0.5 * radius, -half_side), apex + Vec2(-0.5 * radius, half_side),
@@ -175,6 +177,11 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
 /// face, the height of the highest point.
 void add_heights(SectionPanel& panel, const Part& part) {
   const SectionView& view = panel.view;
+  if (view.entrance_corners == 2 && std::holds_alternative<geometry::RoundCube>(part.spec.element)) {
+    add(panel.dimensions, Side::right, {view.x_to_mm, -part.element_depth_mm}, {view.x_to_mm, part.thickness_mm},
+        "length");
+    return;
+  }
   if (view.entrance_corners == 2) {
     panel.dimensions.push_back(
         {Side::right, {view.x_to_mm, 0.0}, {view.x_to_mm, part.thickness_mm}, "thickness", part.thickness_mm});
@@ -241,6 +248,16 @@ std::string arrangement_text(const Part& part) {
                         spec.array.shifted_rows == geometry::RowParity::even ? "even" : "odd");
   if (spec.array.arrangement == Arrangement::checker) text += "; every second element rotated by 90 degrees";
   return text;
+}
+
+/// Adds remarks on the mount and the chamfer of a round cube corner.
+void add_stops(std::vector<std::string>& remarks, const PartSpec& spec) {
+  const auto* const cube = std::get_if<geometry::RoundCube>(&spec.element);
+  if (cube == nullptr) return;
+  if (cube->mount_diameter_mm > 0.0)
+    remarks.push_back(fmt::format("edge of the mount: diameter {:.6g}, {:.6g} above the face", cube->mount_diameter_mm,
+                                  cube->recess_mm));
+  if (cube->chamfer_mm > 0.0) remarks.push_back(fmt::format("chamfer of the face: width {:.6g}", cube->chamfer_mm));
 }
 
 std::string zones_text(const Part& part) {
@@ -352,6 +369,7 @@ DesignDrawing draw_plan(const design::Design& design, const Part& part) {
     add(panel.dimensions, Side::left, a.extent_mm.lower, a.extent_mm.upper, "y length");
   } else {
     drawing.remarks.push_back(arrangement_text(part));
+    add_stops(drawing.remarks, part.spec);
     add_plan(drawing, part, a);
   }
   drawing.remarks.emplace_back("lengths in mm");

@@ -75,6 +75,7 @@ void check_upright(const geometry::Element& element, const InputLocation& where)
 /// Returns the element of the design. The dihedral error of a prism is included in its apex angle.
 /// \throw InputError for an element that the strategy does not cut
 geometry::Element element_of(const design::Design& design, const JobRequest& request) {
+  check_is_cut(design);
   if (design.part().array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"},
                      "must be \"finite\", because infinite arrays cannot be cut, got \"infinite\"");

@@ -80,9 +80,22 @@ design::Design reached(const design::Design& design, const std::string& facets_f
   return reached;
 }
 
+}  // namespace
+
+void check_is_cut(const design::Design& design) {
+  if (std::holds_alternative<geometry::RoundCube>(design.part().element))
+    throw InputError(
+        design.where("element.kind"),
+        "must be \"rtp\", \"hexagonal_icc\" or \"triangular_icc\" for a job, because the processes of retrace "
+        "do not cut single round cube corners, got \"round_icc\"");
+}
+
+namespace {
+
 void check_design(const design::Design& design, const JobRequest& request) {
   design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
+  check_is_cut(design);
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError(Field{"reachable"},
                      "only allowed for cube corners, because a chisel reaches every point of a prism");

@@ -32,4 +32,8 @@ double reachable_fraction(const geometry::Element& element, double tool_width_mm
 std::string reach_json(const ReachablePart& part, const JobRequest& request);
 std::string reach_table(const ReachablePart& part);
 
+/// Checks that the elements of a design are of a kind that a job can contain.
+/// \throw InputError for a round cube corner
+void check_is_cut(const design::Design& design);
+
 }  // namespace retrace::studies

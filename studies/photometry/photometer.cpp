@@ -93,8 +93,12 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 /// surface. For this purpose, clears the flag `has_curved_entrance`. Requires a finite part, a request with
 /// diffraction, and an exact surface instead of a mesh.
 /// \param model null if it is not known yet; the surface is then assumed to be exact
-void allow_tangent_planes(const design::OpticalModel* model, const PhotometrySettings& request,
-                          raytrace::EngineFacts& facts) {
+void allow_tangent_planes(const design::Design& design, const design::OpticalModel* model,
+                          const PhotometrySettings& request, raytrace::EngineFacts& facts) {
+  // The tangent planes of a single element do not contain its chamfer and its mount.
+  const auto* const round =
+      design.elements() != nullptr ? std::get_if<geometry::RoundCube>(&design.part().element) : nullptr;
+  if (round != nullptr && (round->chamfer_mm > 0.0 || round->mount_diameter_mm > 0.0)) return;
   const bool is_mesh = model != nullptr && model->entrance &&
                        !std::holds_alternative<std::shared_ptr<const geometry::EntranceSurface>>(*model->entrance);
   if (!is_mesh && request.diffraction && !(model != nullptr && model->part.period_mm))
@@ -109,6 +113,7 @@ double width_of_cells_mm(const design::Design& design) {
   if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
     return std::min(prism->base_mm, prism->width_mm);
   if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;
+  if (const auto* cube = std::get_if<geometry::RoundCube>(&design.part().element)) return cube->diameter_mm;
   return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 
@@ -191,7 +196,7 @@ Photometer::Photometer(const design::Design& design, const PhotometrySettings& r
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_);
   raytrace::EngineFacts known = design::engine_facts(design_, nullptr);
-  allow_tangent_planes(nullptr, request, known);
+  allow_tangent_planes(design_, nullptr, request, known);
   check_engine(design_, known, request.engine);
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
@@ -205,7 +210,7 @@ Photometer::Photometer(const design::Design& design, const PhotometrySettings& r
   }
   facts_ = design::engine_facts(design_, &model_.optics);
   facts_.needs_phases = request.diffraction;
-  allow_tangent_planes(&model_, request, facts_);
+  allow_tangent_planes(design_, &model_, request, facts_);
   check_engine(design_, facts_, request.engine);
   if (raytrace::is_exact(request.engine, facts_)) tracing_ = Tracing::beams;
 }

@@ -11,6 +11,8 @@
 #include "core/schema/writer.h"
 #include "core/threads.h"
 #include "design/io/design_reader.h"
+#include "design/io/part_reader.h"
+#include "geometry/elements/element_cells.h"
 
 namespace retrace::studies {
 namespace {
@@ -24,6 +26,7 @@ constexpr double kArcminPerDeg = 60.0;
 double size_of(const geometry::Element& element) {
   if (const auto* rtp = std::get_if<RtpElement>(&element)) return rtp->base_mm;
   if (const auto* hexagonal = std::get_if<geometry::HexagonalCube>(&element)) return hexagonal->aperture_mm;
+  if (const auto* round = std::get_if<geometry::RoundCube>(&element)) return round->diameter_mm;
   return std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
@@ -33,6 +36,15 @@ double mean_dihedral_error_deg(const PartSpec& spec) {
   return (errors[0] + errors[1] + errors[2]) / (3.0 * kArcminPerDeg);
 }
 
+bool is_round(const PartSpec& spec) {
+  return std::holds_alternative<geometry::RoundCube>(spec.element);
+}
+
+/// Returns true if the design contains its dihedral errors in arc seconds.
+bool is_in_arcsec(const design::Design& design) {
+  return design.document && design.document->has(design::kDihedralErrorArcsec);
+}
+
 /// Returns the values of the keys that represent a parameter, in the order of the keys.
 std::vector<schema::Value> values_at(const design::Design& design, RreParameter parameter, double value) {
   const PartSpec& spec = design.part();
@@ -40,9 +52,11 @@ std::vector<schema::Value> values_at(const design::Design& design, RreParameter 
     const double more_deg = value - mean_dihedral_error_deg(spec);
     std::vector<double> errors(spec.angle_errors.dihedral_error_arcmin.begin(),
                                spec.angle_errors.dihedral_error_arcmin.end());
-    for (double& error : errors) error += kArcminPerDeg * more_deg;
+    for (double& error : errors) error = (error + kArcminPerDeg * more_deg) * (is_in_arcsec(design) ? 60.0 : 1.0);
     return {errors};
   }
+  if (parameter == RreParameter::thickness_mm && is_round(spec))
+    return {value + geometry::element_depth_mm(spec.element)};
   const auto* const prism = std::get_if<RtpElement>(&spec.element);
   if (parameter == RreParameter::size_mm && prism != nullptr)
     return {value, prism->width_mm * (value / prism->base_mm)};
@@ -266,11 +280,12 @@ std::vector<std::string> keys_of(RreParameter parameter, const design::Design& d
   switch (parameter) {
     case RreParameter::size_mm:
       if (std::holds_alternative<RtpElement>(design.part().element)) return {"element.base_mm", "element.width_mm"};
-      return {"element.aperture_mm"};
+      return {is_round(design.part()) ? "element.diameter_mm" : "element.aperture_mm"};
     case RreParameter::apex_angle_deg: return {"element.apex_angle_deg"};
-    case RreParameter::dihedral_error_deg: return {"surface.dihedral_error_arcmin"};
+    case RreParameter::dihedral_error_deg:
+      return {std::string(is_in_arcsec(design) ? design::kDihedralErrorArcsec : design::kDihedralErrorArcmin)};
     case RreParameter::refractive_index: return {"body.refractive_index"};
-    case RreParameter::thickness_mm: return {"body.thickness_mm"};
+    case RreParameter::thickness_mm: return {is_round(design.part()) ? "element.length_mm" : "body.thickness_mm"};
     case RreParameter::incidence_deg: break;
   }
   return {};

@@ -40,6 +40,7 @@ std::string description_of(const raytrace::PathStep& step) {
     case PathEvent::leaves_side:
       return fmt::format("Leaves through {} with {} % of the incident power.", face, fixed(100.0 * step.power, 1));
     case PathEvent::escapes: return "Is lost behind the part.";
+    case PathEvent::stopped: return "Is stopped by the mount or by the chamfer of the face.";
     case PathEvent::ends: break;
   }
   return "Ends, because the remaining power is negligible.";
@@ -56,6 +57,7 @@ std::string ending_text(const raytrace::LightPath& path) {
     return fmt::format("leaves through the entrance face at {} deg from the direction to the source",
                        fixed_visible(path.deviation_deg, 1));
   if (last == PathEvent::leaves_side) return "leaves through a side";
+  if (last == PathEvent::stopped) return "is stopped by the mount or by the chamfer of the face";
   return last == PathEvent::escapes ? "is lost behind the part" : "loses its power inside the part";
 }
 

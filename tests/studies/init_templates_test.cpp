@@ -18,7 +18,7 @@ using geometry::RtpElement;
 using geometry::TriangularCube;
 
 TEST(InitTemplates, EveryKindParsesAndIsCommented) {
-  ASSERT_EQ(design::design_kinds().size(), 3U);
+  ASSERT_EQ(design::design_kinds().size(), 4U);
   for (const std::string_view kind : design::design_kinds()) {
     const std::string text = design::design_template(kind);
     EXPECT_NO_THROW(design::parse_design(text, "t.toml", {})) << kind;
@@ -30,6 +30,8 @@ TEST(InitTemplates, EveryKindParsesAndIsCommented) {
       design::parse_design(design::design_template("hexagonal_icc"), "t", {}).part().element));
   EXPECT_TRUE(std::holds_alternative<TriangularCube>(
       design::parse_design(design::design_template("triangular_icc"), "t", {}).part().element));
+  EXPECT_TRUE(std::holds_alternative<geometry::RoundCube>(
+      design::parse_design(design::design_template("round_icc"), "t", {}).part().element));
 }
 
 /// Lines with a default value are commented out. They must be valid, and equal to the default, when their "#" is

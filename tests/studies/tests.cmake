@@ -29,3 +29,6 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/validation_test.cpp
   LIBRARIES retrace::validation nlohmann_json::nlohmann_json)
+retrace_test(round_cube_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/round_cube_design_test.cpp support/refusals.cpp
+  LIBRARIES retrace::photometry retrace::fabrication_study nlohmann_json::nlohmann_json)

@@ -58,8 +58,31 @@ function textField(row, entry, { id, change, materials }) {
   return { nodes: [input, options], show: (value) => (input.value = value ?? ""), holds: [input] };
 }
 
-/** Creates a field for several numbers, separated by commas. */
-function numbersField(row, entry, { id, change }) {
+/** Maximum number of sliders of one key. */
+const MAX_SLIDERS = 3;
+
+/** Creates the sliders of a short list of numbers. A slider calls change() with the list that contains its new value. */
+function slidersOf(row, entry, { size_mm, change }) {
+  const values = Array.isArray(entry.value) ? entry.value : [];
+  const slider = values.length <= MAX_SLIDERS && sliderOf(row, values.find((v) => Math.abs(v) === Math.max(...values.map(Math.abs))), size_mm);
+  if (!slider) return [];
+  const ranges = values.map((value, k) =>
+    h("input", {
+      type: "range",
+      min: slider.low,
+      max: slider.high,
+      step: slider.step,
+      value,
+      "aria-label": `${words(row.name)}, slider ${k + 1}`,
+      "data-path": row.path,
+      oninput: () => change(ranges.map((range) => clean(Number(range.value), slider.step))),
+    }),
+  );
+  return ranges;
+}
+
+/** Creates a field for several numbers, separated by commas, with sliders for a short list. */
+function numbersField(row, entry, { id, size_mm, change }) {
   const input = h("input", {
     type: "text",
     id,
@@ -70,8 +93,17 @@ function numbersField(row, entry, { id, change }) {
       else if (values.every(Number.isFinite)) change(values);
     },
   });
-  const show = (value) => (input.value = value == null ? "" : [].concat(value).map((v) => short(v, 12).replace("−", "-")).join(", "));
-  return { nodes: [input], show, holds: [input] };
+  const write = (value) => (input.value = value == null ? "" : [].concat(value).map((v) => short(v, 12).replace("−", "-")).join(", "));
+  const move = (value) => {
+    write(value);
+    change(value);
+  };
+  const ranges = slidersOf(row, entry, { size_mm, change: move });
+  const show = (value) => {
+    write(value);
+    ranges.forEach((range, k) => (range.value = [].concat(value)[k] ?? 0));
+  };
+  return { nodes: [input, ...ranges], show, holds: [input, ...ranges] };
 }
 
 /**

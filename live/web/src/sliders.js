@@ -9,6 +9,7 @@ const BY_NAME = {
   acceptance_half_angle_deg: [0.1, 5],
   temperature_c: [-40, 80],
   dihedral_error_arcmin: [-30, 30],
+  dihedral_error_arcsec: [-10, 10],
   facet_tilt_arcmin: [-30, 30],
   mask_threshold: [0, 1],
   edge_chords: [4, 64],

@@ -3,6 +3,7 @@
 const SUFFIXES = [
   ["_per_mm", "1/mm"],
   ["_arcmin", "′"],
+  ["_arcsec", "″"],
   ["_percent", "%"],
   ["_deg", "°"],
   ["_mm", "mm"],

@@ -47,8 +47,12 @@ std::uint64_t rays_in(const raytrace::RayLedger& ledger, std::size_t account) {
   return account == kMissedAccount ? ledger.rays_missed : ledger.leaving[account];
 }
 
-constexpr std::string_view kShellReflected =
-    raytrace::kAccountNames[static_cast<std::size_t>(raytrace::Account::shell_reflected)];
+/// Accounts of light that is not traced further. They are listed only if their power is not 0.
+constexpr raytrace::Account kUntracedAccounts[] = {raytrace::Account::shell_reflected, raytrace::Account::stopped};
+
+std::string_view name_of(raytrace::Account account) {
+  return raytrace::kAccountNames[static_cast<std::size_t>(account)];
+}
 
 const char* unit_of(RayPower power) {
   return power == RayPower::luminous_lm ? "lm" : "W";
@@ -73,8 +77,8 @@ std::string rays_json(const RayResult& result) {
     shares[std::string(kRayAccounts[k])] = ledger.incident > 0.0 ? power_in(ledger, k) / ledger.incident : 0.0;
     if (rays_in(ledger, k) > 0) leaving[std::string(kRayAccounts[k])] = rays_in(ledger, k);
   }
-  if (const double reflected = ledger.ledger[raytrace::Account::shell_reflected]; reflected > 0.0)
-    shares[std::string(kShellReflected)] = reflected / ledger.incident;
+  for (const raytrace::Account account : kUntracedAccounts)
+    if (ledger.ledger[account] > 0.0) shares[std::string(name_of(account))] = ledger.ledger[account] / ledger.incident;
   json["ledger"] = shares;
   json["std_error"] = ledger.std_error();
   json["leaving"] = leaving.is_null() ? Json::object() : leaving;
@@ -94,7 +98,7 @@ std::string rays_table(const RayResult& result) {
     table += fmt::format("{:<20}{:>10}{:>14.6g}{:>12}\n", account, fixed(100.0 * share, 4), power, rays);
   };
   for (std::size_t k = 0; k < kRayAccounts.size(); ++k) add(kRayAccounts[k], power_in(ledger, k), rays_in(ledger, k));
-  add(kShellReflected, ledger.ledger[raytrace::Account::shell_reflected], 0);
+  for (const raytrace::Account account : kUntracedAccounts) add(name_of(account), ledger.ledger[account], 0);
   return table + fmt::format("{:<20}{:>10}\n", "std_error", fixed(100.0 * ledger.std_error(), 4));
 }
 

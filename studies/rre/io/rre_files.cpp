@@ -212,16 +212,27 @@ std::string rre_json(const RreResult& result) {
 
 std::string rre_csv(const RreResult& result) {
   CsvWriter csv;
-  // The last account contains light that shells reflect. Its column is written only if at least one value is not 0.
-  const bool has_shells = std::ranges::any_of(
-      result.points, [](const RrePoint& p) { return p.ledger[raytrace::Account::shell_reflected] != 0.0; });
-  const std::size_t accounts =
-      has_shells ? kAccountCount : static_cast<std::size_t>(raytrace::Account::shell_reflected);
+  // Columns of accounts that are not always listed are written only if at least one value is not 0.
+  std::vector<std::size_t> accounts;
+  std::vector<std::string_view> names;
+  for (std::size_t k = 0; k < kAccountCount; ++k) {
+    const auto is_listed_at = [&](const RrePoint& p) {
+      return raytrace::is_listed(static_cast<raytrace::Account>(k), p.ledger.power[k]);
+    };
+    if (!raytrace::is_listed(static_cast<raytrace::Account>(k), 0.0) &&
+        std::ranges::none_of(result.points, is_listed_at))
+      continue;
+    accounts.push_back(k);
+    names.push_back(kAccountNames[k]);
+  }
   csv.row("design", "incidence_deg", "azimuth_deg", "wavelength_nm", "acceptance_half_angle_deg", "rre", "std_error",
-          std::span(kAccountNames).first(accounts), "engine");
-  for (const RrePoint& p : result.points)
+          std::span<const std::string_view>(names), "engine");
+  for (const RrePoint& p : result.points) {
+    std::vector<double> power;
+    for (const std::size_t k : accounts) power.push_back(p.ledger.power[k]);
     csv.row(p.design, p.incidence_deg, p.azimuth_deg, p.wavelength_nm, p.acceptance_half_angle_deg, p.rre, p.std_error,
-            std::span(p.ledger.power).first(accounts), p.engine);
+            std::span<const double>(power), p.engine);
+  }
   return csv.text();
 }
 
