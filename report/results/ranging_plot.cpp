@@ -61,9 +61,9 @@ LinePlot ranging_rings_plot(const RangingResult& result) {
   plot.title = ranging_title(result);
   plot.x_label = "angle from the direction to the source (arcsec)";
   plot.y_label = "cross section (10⁶ m²)";
-  Series mean{"mean over the azimuth", {}, {}};
-  Series min{"minimum", {}, {}};
-  Series max{"maximum", {}, {}};
+  Series mean{"mean over the azimuth", {}, {}, {}};
+  Series min{"minimum", {}, {}, {}};
+  Series max{"maximum", {}, {}, {}};
   for (std::size_t k = 0; k < result.map.ring_rad.size(); ++k) {
     const double angle = result.map.ring_rad[k] * kArcsecOfRad;
     mean.add(angle, result.map.ring_m2[k].mean / kMillionM2);
@@ -81,7 +81,7 @@ LinePlot ranging_response_plot(const RangingResult& result) {
   plot.x_label = "one-way range from the origin (mm)";
   plot.y_label = "response (m² per mm)";
   plot.series.push_back({fmt::format("pulse of {} ps", shortest(*result.settings.request.pulse_ps)),
-                         p.response.range_mm, p.response.per_mm});
+                         p.response.range_mm, p.response.per_mm, {}});
   return plot;
 }
 
