@@ -14,6 +14,8 @@ using geometry::Vec2, geometry::Vec3, raytrace::JonesMatrix, raytrace::Stokes;
 namespace field_lanes = raytrace::field_lanes;
 
 constexpr double kMm2PerM2 = 1e6;
+// Minimum power of a beam whose direction counts as a deflection, as a fraction of the diffracted power.
+constexpr double kNoticeablePower = 1e-2;
 
 /// Returns the coherency matrix of light that travels away from the source. Its second axis is opposite to the p axis
 /// of this light.
@@ -47,7 +49,8 @@ CubeField::CubeField(const raytrace::FarField& field, double wavelength_nm, doub
     std::vector<Wave>& waves = groups_.emplace_back();
     for (const raytrace::FieldPolygon& polygon : group.polygons)
       waves.push_back({field_lanes::Outline(polygon.transform), polygon.cosines,
-                       scale * polygon.mean_factor * std::sqrt(group.copies) * polygon.amplitude});
+                       scale * polygon.mean_factor * std::sqrt(group.copies) * polygon.amplitude,
+                       group.copies * polygon.power});
   }
   for (const raytrace::FarFieldRay& ray : field.rays()) undiffracted_power_ += ray.power;
 }
@@ -56,6 +59,7 @@ double CubeField::deflection_rad(const Vec3& to_source) const {
   double largest = 0.0;
   for (const std::vector<Wave>& waves : groups_)
     for (const Wave& wave : waves) {
+      if (wave.power < kNoticeablePower * diffracted_power_) continue;
       const Vec3 direction(wave.cosines.x(), wave.cosines.y(),
                            std::sqrt(std::max(0.0, 1.0 - wave.cosines.squaredNorm())));
       largest = std::max(largest, raytrace::small_angle_between(direction, to_source));

@@ -42,6 +42,7 @@ class CubeField {
   /// Returns the angular width of the finest details, in rad, or infinity if there is no light.
   double detail_rad() const { return detail_rad_; }
   /// Returns the largest angle between the direction to the source and the direction of a beam in geometrical optics.
+  /// Weak beams are ignored.
   /// \param to_source unit vector in the part frame
   double deflection_rad(const geometry::Vec3& to_source) const;
   /// Returns the fraction of the incident power that is diffracted.
@@ -58,6 +59,7 @@ class CubeField {
     raytrace::field_lanes::Outline outline;
     geometry::Vec2 cosines;
     raytrace::JonesMatrix amplitude;
+    double power = 0.0;  ///< fraction of the incident power
   };
 
   std::vector<std::vector<Wave>> groups_;

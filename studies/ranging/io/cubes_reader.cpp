@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <numeric>
 #include <optional>
 
 #include "core/atomic_file.h"
@@ -123,53 +123,46 @@ std::size_t count_in(const CubesFile& file) {
   return count;
 }
 
-enum CubeColumn : std::size_t { kX, kY, kZ, kAxisX, kAxisY, kAxisZ };
 constexpr std::array<std::string_view, 6> kCubeColumns = {"x_mm", "y_mm", "z_mm", "axis_x", "axis_y", "axis_z"};
+constexpr std::string_view kClockingColumn = "clocking_deg";
 constexpr std::array<std::string_view, 3> kErrorColumns = {"dihedral_error_1_arcsec", "dihedral_error_2_arcsec",
                                                            "dihedral_error_3_arcsec"};
-constexpr std::string_view kClockingColumn = "clocking_deg";
+constexpr std::size_t kAxisColumn = 3;
 
-/// Positions of the columns in a table.
-struct ColumnPlaces {
-  std::array<std::size_t, 6> required{};
+/// Columns of a table of cubes, in the order in which they must be.
+struct CubeColumns {
+  std::vector<std::string_view> names;
   std::optional<std::size_t> clocking;
-  std::optional<std::array<std::size_t, 3>> errors;
+  std::optional<std::size_t> errors;  ///< index of the first of three columns
 };
 
-ColumnPlaces places_in(const CsvReader& table) {
-  ColumnPlaces places;
-  for (std::size_t k = 0; k < kCubeColumns.size(); ++k) {
-    const auto found = table.find(kCubeColumns[k]);
-    if (!found) table.fail(fmt::format("the column {} is missing", kCubeColumns[k]));
-    places.required[k] = *found;
+/// Returns the columns that a table must have. Columns that are optional are included if the table has any of them.
+CubeColumns columns_of(std::string_view text, const std::string& source_name) {
+  const CsvReader table(text, source_name, kMaxCubeBytes);
+  CubeColumns columns{{kCubeColumns.begin(), kCubeColumns.end()}, {}, {}};
+  if (table.find(kClockingColumn)) {
+    columns.clocking = columns.names.size();
+    columns.names.push_back(kClockingColumn);
   }
-  places.clocking = table.find(kClockingColumn);
-  std::array<std::size_t, 3> errors{};
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < kErrorColumns.size(); ++k)
-    if (const auto found = table.find(kErrorColumns[k])) {
-      errors[k] = *found;
-      ++count;
-    }
-  if (count != 0 && count != kErrorColumns.size())
-    table.fail(fmt::format("must contain all or none of the columns {}, {} and {}", kErrorColumns[0], kErrorColumns[1],
-                           kErrorColumns[2]));
-  if (count != 0) places.errors = errors;
-  return places;
+  if (std::ranges::any_of(kErrorColumns, [&](std::string_view name) { return table.find(name).has_value(); })) {
+    columns.errors = columns.names.size();
+    columns.names.insert(columns.names.end(), kErrorColumns.begin(), kErrorColumns.end());
+  }
+  return columns;
 }
 
-ArrayCube cube_in(const CsvReader& row, const ColumnPlaces& places) {
+ArrayCube cube_in(const CsvReader& row, const CubeColumns& columns) {
   ArrayCube cube;
   for (std::size_t k = 0; k < 3; ++k) {
-    cube.position_mm[static_cast<Eigen::Index>(k)] = row.number(places.required[kX + k], kPosition);
-    cube.axis[static_cast<Eigen::Index>(k)] = row.number(places.required[kAxisX + k], kComponent);
+    cube.position_mm[static_cast<Eigen::Index>(k)] = row.number(k, kPosition);
+    cube.axis[static_cast<Eigen::Index>(k)] = row.number(kAxisColumn + k, kComponent);
   }
-  if (!(cube.axis.norm() > 0.0)) row.fail(places.required[kAxisX], "the axis must not be zero in all components");
+  if (!(cube.axis.norm() > 0.0)) row.fail(kAxisColumn, "the axis must not be zero in all components");
   cube.axis.normalize();
-  if (places.clocking) cube.clocking_deg = row.number(*places.clocking, kRotation);
-  if (!places.errors) return cube;
+  if (columns.clocking) cube.clocking_deg = row.number(*columns.clocking, kRotation);
+  if (!columns.errors) return cube;
   std::array<double, 3> errors{};
-  for (std::size_t k = 0; k < 3; ++k) errors[k] = row.number((*places.errors)[k], kErrorArcsec);
+  for (std::size_t k = 0; k < 3; ++k) errors[k] = row.number(*columns.errors + k, kErrorArcsec);
   cube.dihedral_error_arcsec = errors;
   return cube;
 }
@@ -195,11 +188,11 @@ std::vector<ArrayCube> parse_cubes(std::string_view text, const std::string& sou
 }
 
 std::vector<ArrayCube> parse_cube_table(std::string_view text, const std::string& source_name) {
-  CsvReader table(text, source_name, kMaxCubeBytes);
-  const ColumnPlaces places = places_in(table);
+  const CubeColumns columns = columns_of(text, source_name);
+  CsvReader table(text, source_name, kMaxCubeBytes, columns.names);
   std::vector<ArrayCube> cubes;
   while (table.next()) {
-    cubes.push_back(cube_in(table, places));
+    cubes.push_back(cube_in(table, columns));
     if (cubes.size() > kMaxCubes) refuse_count({source_name, 0, ""}, cubes.size());
   }
   if (cubes.empty()) refuse_count({source_name, 0, ""}, 0);

@@ -111,7 +111,7 @@ std::string millions(double m2) {
 
 std::string heading(const RangingResult& result) {
   const RangingSettings& settings = result.settings;
-  std::string text = fmt::format("entrance face {} mm2, apex {} mm behind it\n", shortest(std::round(1e3 * result.entrance_mm2) * 1e-3),
+  std::string text = fmt::format("entrance face {} mm2, apex {} mm behind it\n", fixed(result.entrance_mm2, 3),
                                  fixed(result.depth_mm, 4));
   if (settings.annulus)
     text += fmt::format("velocity aberration {} to {} arcsec, {} to {} microrad\n",
@@ -246,7 +246,9 @@ std::string ranging_table(const RangingResult& result) {
   }
   if (result.points.empty() || result.points.front().shots.empty()) return text;
   const ShotSummary shots = summary_of(result.points.front().shots);
-  return text + fmt::format("{} shots: {} +- {}, from {} to {}; centroid {} +- {} mm\n",
+  return text + fmt::format("towards the receiver {} without interference; {} shots: {} +- {}, from {} to {}; centroid {} "
+                            "+- {} mm\n",
+                            millions(result.points.front().ranges.cross_section_m2),
                             result.points.front().shots.size(), millions(shots.mean_m2), millions(shots.deviation_m2),
                             millions(shots.min_m2), millions(shots.max_m2), fixed(shots.centroid_mean_mm, 3),
                             fixed(shots.centroid_deviation_mm, 3));
