@@ -68,19 +68,19 @@ TEST(CubesFile, RotationsHaveTheDocumentedAxes) {
 TEST(CubesFile, WrongFilesAreRefusedWithLineAndKey) {
   const auto refused = [](const std::string& text) { return refusal_of([&] { parse_cubes(kSchema + text, "c.toml"); }); };
   EXPECT_EQ(refused(""), "c.toml");
-  EXPECT_EQ(refused("[[ring]]\ncount = 3\n"), "c.toml:2: ring[0].radius_mm");
-  EXPECT_EQ(refused("[[ring]]\nradius_mm = -1\ncount = 3\n"), "c.toml:3: ring[0].radius_mm");
-  EXPECT_EQ(refused("[[ring]]\nradius_mm = 1\ncount = 0\n"), "c.toml:4: ring[0].count");
-  EXPECT_EQ(refused("[[ring]]\nradius_mm = 1\ncount = 2\nlatitude_deg = 91\n"), "c.toml:5: ring[0].latitude_deg");
-  EXPECT_EQ(refused("[[grid]]\ncolumns = 1\nrows = 1.5\npitch_mm = 1\n"), "c.toml:4: grid[0].rows");
-  EXPECT_EQ(refused("[[grid]]\ncolumns = 1\nrows = 1\npitch_mm = 0\n"), "c.toml:5: grid[0].pitch_mm");
+  EXPECT_EQ(refused("[[ring]]\ncount = 3\n"), "c.toml:2: ring[1].radius_mm");
+  EXPECT_EQ(refused("[[ring]]\nradius_mm = -1\ncount = 3\n"), "c.toml:3: ring[1].radius_mm");
+  EXPECT_EQ(refused("[[ring]]\nradius_mm = 1\ncount = 0\n"), "c.toml:4: ring[1].count");
+  EXPECT_EQ(refused("[[ring]]\nradius_mm = 1\ncount = 2\nlatitude_deg = 91\n"), "c.toml:5: ring[1].latitude_deg");
+  EXPECT_EQ(refused("[[grid]]\ncolumns = 1\nrows = 1.5\npitch_mm = 1\n"), "c.toml:4: grid[1].rows");
+  EXPECT_EQ(refused("[[grid]]\ncolumns = 1\nrows = 1\npitch_mm = 0\n"), "c.toml:5: grid[1].pitch_mm");
   EXPECT_EQ(refused("[[grid]]\ncolumns = 1000\nrows = 1000\npitch_mm = 1\n"), "c.toml");
-  EXPECT_EQ(refused("[[cube]]\naxis = [0, 0, 1]\n"), "c.toml:2: cube[0].position_mm");
-  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0]\n"), "c.toml:3: cube[0].position_mm");
-  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0, 0]\naxis = [0, 0, 0]\n"), "c.toml:4: cube[0].axis");
-  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0, 0]\nclocking_deg = 361\n"), "c.toml:4: cube[0].clocking_deg");
+  EXPECT_EQ(refused("[[cube]]\naxis = [0, 0, 1]\n"), "c.toml:2: cube[1].position_mm");
+  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0]\n"), "c.toml:3: cube[1].position_mm");
+  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0, 0]\naxis = [0, 0, 0]\n"), "c.toml:4: cube[1].axis");
+  EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0, 0]\nclocking_deg = 361\n"), "c.toml:4: cube[1].clocking_deg");
   EXPECT_EQ(refused("[[cube]]\nposition_mm = [0, 0, 0]\ndihedral_error_arcsec = [1, 2]\n"),
-            "c.toml:4: cube[0].dihedral_error_arcsec");
+            "c.toml:4: cube[1].dihedral_error_arcsec");
   EXPECT_EQ(refused("[[cubes]]\nposition_mm = [0, 0, 0]\n"), "c.toml:2: cubes");
   EXPECT_EQ(refusal_of([] { parse_cubes("schema = \"retrace.design/1\"\n", "c.toml"); }), "c.toml:1: schema");
 }

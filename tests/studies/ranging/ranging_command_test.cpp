@@ -8,10 +8,9 @@
 
 #include "tests/app/program.h"
 
-namespace retrace::testing::ranging_command_test {
+namespace retrace::test::ranging_command_test {
 namespace {
 
-using test::Arguments, test::Json, test::Outcome, test::TemporaryFolder;
 
 const std::string kCube =
     "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
@@ -84,7 +83,7 @@ TEST(RangingCommand, WrongOptionsAreRefused) {
   folder.write("array.toml",
                "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\nextent = "
                "\"infinite\"\n[body]\nthickness_mm = 1\n");
-  folder.write("rough.toml", kCube + "[surface]\nmodel = \"abg\"\nabg = [1e-4, 1e-4, 1.5]\n");
+  folder.write("rough.toml", kCube + "[surface]\nmodel = \"abg\"\nabg_a = 1e-4\nabg_b = 1e-4\nabg_g = 1.5\n");
   folder.write("white.toml", kCube.substr(0, kCube.find("[light]")) + "[light]\nspectrum = \"A\"\n");
   folder.write("bad_cubes.toml", "schema = \"retrace.cubes/1\"\n[[cube]]\n");
   const auto refused = [&](Arguments arguments) {
@@ -96,7 +95,7 @@ TEST(RangingCommand, WrongOptionsAreRefused) {
   };
   EXPECT_EQ(refused({"prism.toml"}), "prism.toml:3: element.kind");
   EXPECT_EQ(refused({"array.toml"}), "array.toml:5: array.arrangement");
-  EXPECT_EQ(refused({"rough.toml"}), "rough.toml:12: surface.model");
+  EXPECT_EQ(refused({"rough.toml"}), "rough.toml:13: surface.model");
   EXPECT_EQ(refused({"white.toml"}), "--wavelength");
   EXPECT_EQ(with("--wavelength", "50"), "--wavelength");
   EXPECT_EQ(with("--incidence", "90"), "--incidence");
@@ -122,4 +121,4 @@ TEST(RangingCommand, WrongOptionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace retrace::testing::ranging_command_test
+}  // namespace retrace::test::ranging_command_test
