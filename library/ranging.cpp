@@ -55,7 +55,8 @@ RangingResult ranging(const Design& design, const RangingRequest& request, const
     result.map = drawing_of([held] { return report::ranging_map_plot(*held); });
     result.rings = drawing_of([held] { return report::ranging_rings_plot(*held); });
   }
-  if (!result.response_csv.empty()) result.response = drawing_of([held] { return report::ranging_response_plot(*held); });
+  if (!result.response_csv.empty())
+    result.response = drawing_of([held] { return report::ranging_response_plot(*held); });
   return result;
 }
 

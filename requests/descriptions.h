@@ -20,10 +20,10 @@
 namespace retrace::requests {
 
 /// Tuple of all types of requests, for templates that iterate over the types.
-using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest,
-                               MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest,
-                               RaysRequest, TraceRequest, RoughnessRequest, RreRequest, StudyRequest,
-                               VerificationRequest>;
+using AllRequests =
+    std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest, MetrologyRequest,
+               SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest, TraceRequest,
+               RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();

@@ -78,16 +78,17 @@ ExitCode run(const RangingOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command ranging_command() {
-  return {.name = "ranging",
-          .summary = "cross sections and range corrections of cube corners for laser ranging",
-          .manual =
-              "Computes the optical cross section 4 pi R_I of a single cube corner over its far field, with diffraction "
-              "and polarisation, its mean over an annulus of velocity aberration, and its range correction. "
-              "`--cubes` adds the light of an array of such cubes, on a satellite or a plate, with its pulse response "
-              "and single shots.",
-          .reads = {"retrace.design/1", "retrace.cubes/1", "cubes (CSV)"},
-          .writes = {"retrace.ranging/1"},
-          .begin = begins<RangingOptions>(arguments, run)};
+  return {
+      .name = "ranging",
+      .summary = "cross sections and range corrections of cube corners for laser ranging",
+      .manual =
+          "Computes the optical cross section 4 pi R_I of a single cube corner over its far field, with diffraction "
+          "and polarisation, its mean over an annulus of velocity aberration, and its range correction. "
+          "`--cubes` adds the light of an array of such cubes, on a satellite or a plate, with its pulse response "
+          "and single shots.",
+      .reads = {"retrace.design/1", "retrace.cubes/1", "cubes (CSV)"},
+      .writes = {"retrace.ranging/1"},
+      .begin = begins<RangingOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

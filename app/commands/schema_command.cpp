@@ -23,11 +23,9 @@ namespace {
 
 /// Returns the file formats that have a schema, sorted by name.
 std::vector<const schema::Format*> formats() {
-  return {&studies::cubes_format(),           &design::design_format(),
-          &fabrication::job_format(),         &fabrication::machine_format(),
-          &materials::materials_format(),     &fabrication::planed_part_format(),
-          &fabrication::process_format(),     &studies::study_format(),
-          &fabrication::turning::turned_part_format()};
+  return {&studies::cubes_format(),       &design::design_format(),       &fabrication::job_format(),
+          &fabrication::machine_format(), &materials::materials_format(), &fabrication::planed_part_format(),
+          &fabrication::process_format(), &studies::study_format(),       &fabrication::turning::turned_part_format()};
 }
 
 struct SchemaOptions {

@@ -178,11 +178,11 @@ void bind_ranging(py::module_& module) {
       .def_readonly("map", &RangingResult::map)
       .def_readonly("rings", &RangingResult::rings)
       .def_readonly("response", &RangingResult::response);
-  module.def("ranging", [](const Design& design, const RangingRequest& request, const py::object& progress,
-                           unsigned threads) {
-    return watched(progress, threads,
-                   [design, request](const Running& running) { return ranging(design, request, running); });
-  });
+  module.def("ranging",
+             [](const Design& design, const RangingRequest& request, const py::object& progress, unsigned threads) {
+               return watched(progress, threads,
+                              [design, request](const Running& running) { return ranging(design, request, running); });
+             });
 }
 
 void bind_part(py::module_& module) {

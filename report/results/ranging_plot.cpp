@@ -81,7 +81,9 @@ LinePlot ranging_response_plot(const RangingResult& result) {
   plot.x_label = "one-way range from the origin (mm)";
   plot.y_label = "response (m² per mm)";
   plot.series.push_back({fmt::format("pulse of {} ps", shortest(*result.settings.request.pulse_ps)),
-                         p.response.range_mm, p.response.per_mm, {}});
+                         p.response.range_mm,
+                         p.response.per_mm,
+                         {}});
   return plot;
 }
 

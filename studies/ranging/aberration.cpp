@@ -47,11 +47,10 @@ double refined_max(const Annulus& annulus, PolarPoint best, double value, double
   double radial = step_rad;
   double around = step_rad / std::max(annulus.outer_rad, step_rad);
   for (int k = 0; k < kHalvings; ++k) {
-    const std::array<PolarPoint, 4> tried = {
-        {{std::min(best.radius + radial, annulus.outer_rad), best.angle},
-         {std::max(best.radius - radial, annulus.inner_rad), best.angle},
-         {best.radius, best.angle + around},
-         {best.radius, best.angle - around}}};
+    const std::array<PolarPoint, 4> tried = {{{std::min(best.radius + radial, annulus.outer_rad), best.angle},
+                                              {std::max(best.radius - radial, annulus.inner_rad), best.angle},
+                                              {best.radius, best.angle + around},
+                                              {best.radius, best.angle - around}}};
     std::vector<Vec2> angles;
     for (const PolarPoint& p : tried) angles.push_back(at(p.radius, p.angle));
     const std::vector<double> found = values(angles);
@@ -81,8 +80,7 @@ std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_r
   const double width = annulus.outer_rad - annulus.inner_rad;
   if (annulus.outer_rad == 0.0) return {{Vec2::Zero(), 1.0}};
   const std::size_t rings = width > 0.0 ? count_of(kPointsPerDetail * width / detail_rad + kMorePoints) : 1;
-  const raytrace::GaussRule rule =
-      rings > 1 ? raytrace::gauss_legendre(rings) : raytrace::GaussRule{{0.5}, {1.0}};
+  const raytrace::GaussRule rule = rings > 1 ? raytrace::gauss_legendre(rings) : raytrace::GaussRule{{0.5}, {1.0}};
   const std::size_t around = count_of(kPointsPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints);
   std::vector<AnnulusPoint> points;
   double sum = 0.0;
@@ -114,7 +112,8 @@ AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, con
   for (std::size_t ring = 0; ring < rings; ++ring)
     for (std::size_t k = 0; k < around; ++k) {
       const double share = rings > 1 ? static_cast<double>(ring) / static_cast<double>(rings - 1) : 0.0;
-      searched.push_back({annulus.inner_rad + share * width, kTwoPi * static_cast<double>(k) / static_cast<double>(around)});
+      searched.push_back(
+          {annulus.inner_rad + share * width, kTwoPi * static_cast<double>(k) / static_cast<double>(around)});
       angles.push_back(at(searched.back().radius, searched.back().angle));
     }
   const std::vector<double> found = values(angles);

@@ -30,8 +30,8 @@ using Amplitude = Eigen::Vector2cd;
 struct Emitters {
   std::vector<std::array<Amplitude, 2>> amplitudes;  ///< strongest coherent group of each cube
   std::vector<double> range_mm;
-  double other_m2 = 0.0;         ///< power of all other groups
-  double other_moment = 0.0;     ///< sum of power times range over these groups
+  double other_m2 = 0.0;      ///< power of all other groups
+  double other_moment = 0.0;  ///< sum of power times range over these groups
 };
 
 double power_of(const std::array<Amplitude, 2>& amplitudes) {
@@ -61,7 +61,8 @@ Emitters emitters_of(const std::vector<CubeEcho>& echoes, const raytrace::Stokes
 std::vector<std::complex<double>> random_phases(std::size_t count, std::uint32_t seed, std::size_t shot) {
   std::vector<std::complex<double>> phases;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto words = philox({seed, kPhaseStream}, static_cast<std::uint32_t>(shot), static_cast<std::uint32_t>(k / 4));
+    const auto words =
+        philox({seed, kPhaseStream}, static_cast<std::uint32_t>(shot), static_cast<std::uint32_t>(k / 4));
     phases.push_back(std::polar(1.0, kTwoPi * unit_interval(words[k % 4])));
   }
   return phases;
@@ -81,7 +82,8 @@ Shot continuous_shot(const Emitters& all, const std::vector<std::complex<double>
   return {power_of(sums) + all.other_m2, centroid_mm};
 }
 
-Shot pulsed_shot(const Emitters& all, const std::vector<std::complex<double>>& phases, const Eigen::ArrayXXd& overlaps) {
+Shot pulsed_shot(const Emitters& all, const std::vector<std::complex<double>>& phases,
+                 const Eigen::ArrayXXd& overlaps) {
   double power = all.other_m2;
   double moment = all.other_moment;
   for (std::size_t j = 0; j < all.amplitudes.size(); ++j)
@@ -89,8 +91,7 @@ Shot pulsed_shot(const Emitters& all, const std::vector<std::complex<double>>& p
       const double share = overlaps(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k));
       if (share == 0.0) continue;
       std::complex<double> product = 0.0;
-      for (std::size_t state = 0; state < 2; ++state)
-        product += all.amplitudes[k][state].dot(all.amplitudes[j][state]);
+      for (std::size_t state = 0; state < 2; ++state) product += all.amplitudes[k][state].dot(all.amplitudes[j][state]);
       const double both = (j == k ? 1.0 : 2.0) * share * (product * phases[j] * std::conj(phases[k])).real();
       power += both;
       moment += 0.5 * both * (all.range_mm[j] + all.range_mm[k]);
@@ -126,8 +127,7 @@ RangeDistribution distribution_of(const std::vector<CubeEcho>& echoes) {
   if (!(all.cross_section_m2 > 0.0)) return {};
   all.centroid_mm = moment / all.cross_section_m2;
   double squares = 0.0;
-  for (const CubeEcho& echo : echoes)
-    squares += echo.cross_section_m2 * std::pow(echo.range_mm - all.centroid_mm, 2.0);
+  for (const CubeEcho& echo : echoes) squares += echo.cross_section_m2 * std::pow(echo.range_mm - all.centroid_mm, 2.0);
   all.rms_mm = std::sqrt(squares / all.cross_section_m2);
   return all;
 }
@@ -165,8 +165,8 @@ std::vector<Shot> simulated_shots(const std::vector<CubeEcho>& echoes, const Sho
     overlaps.resize(count, count);
     for (Eigen::Index j = 0; j < count; ++j)
       for (Eigen::Index k = 0; k < count; ++k)
-        overlaps(j, k) = overlap(
-            all.range_mm[static_cast<std::size_t>(j)] - all.range_mm[static_cast<std::size_t>(k)], sigma);
+        overlaps(j, k) =
+            overlap(all.range_mm[static_cast<std::size_t>(j)] - all.range_mm[static_cast<std::size_t>(k)], sigma);
   }
   const double centroid_mm = distribution_of(echoes).centroid_mm;
   std::vector<Shot> shots(settings.count);

@@ -17,8 +17,8 @@ namespace retrace::studies {
 
 /// Light that one cube of an array returns towards the receiver.
 struct CubeEcho {
-  std::size_t cube = 0;         ///< index of the cube
-  double range_mm = 0.0;        ///< one-way range, relative to the origin of the array
+  std::size_t cube = 0;   ///< index of the cube
+  double range_mm = 0.0;  ///< one-way range, relative to the origin of the array
   double cross_section_m2 = 0.0;
   /// Fields of the coherent groups. Its axes are the axes of the source in the frame of the array.
   DirectionField field = {};

@@ -24,7 +24,8 @@ std::vector<ArrayCube> cubes_of(const CubeRing& ring) {
   for (int k = 0; k < ring.count; ++k) {
     const double azimuth = ring.azimuth_deg * kRadPerDeg + kTwoPi * k / ring.count;
     ArrayCube cube;
-    cube.axis = Vec3(std::cos(latitude) * std::cos(azimuth), std::cos(latitude) * std::sin(azimuth), std::sin(latitude));
+    cube.axis =
+        Vec3(std::cos(latitude) * std::cos(azimuth), std::cos(latitude) * std::sin(azimuth), std::sin(latitude));
     cube.position_mm = ring.radius_mm * cube.axis;
     cube.clocking_deg = ring.clocking_deg + k * ring.clocking_step_deg;
     cubes.push_back(cube);

@@ -156,8 +156,7 @@ CubeField CubeCorner::field(const Vec3& to_source, std::size_t wavelength, const
     if (raytrace::small_angle_between(beam.direction, to_source) > kDiffractedRad) return;
     if (prepared_->entrance_reflections || !is_reflection) collector.add(beam);
   };
-  const raytrace::BeamResult result =
-      prepared_->tracer->trace(light.optics, illumination, {0.5}, beams, cancel, add);
+  const raytrace::BeamResult result = prepared_->tracer->trace(light.optics, illumination, {0.5}, beams, cancel, add);
   if (!result.complete) return {};
   const raytrace::FarField field = collector.finish();
   if (is_cancelled(cancel)) return {};

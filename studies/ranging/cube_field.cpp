@@ -29,8 +29,7 @@ Eigen::Matrix2cd sent_coherency(const Stokes& s) {
 
 Stokes returned_stokes(const JonesMatrix& jones, const Stokes& incident) {
   const Eigen::Matrix2cd c = jones * sent_coherency(incident) * jones.adjoint();
-  return {c(0, 0).real() + c(1, 1).real(), c(0, 0).real() - c(1, 1).real(), 2.0 * c(0, 1).real(),
-          2.0 * c(0, 1).imag()};
+  return {c(0, 0).real() + c(1, 1).real(), c(0, 0).real() - c(1, 1).real(), 2.0 * c(0, 1).real(), 2.0 * c(0, 1).imag()};
 }
 
 Stokes returned_stokes(const DirectionField& field, const Stokes& incident) {

@@ -104,8 +104,7 @@ double LitCubes::beam_mm2() const {
 
 double LitCubes::diffracted_power() const {
   double sum = 0.0;
-  for (const Lit& lit : lit_)
-    sum += fields_[lit.field].field.beam_mm2() * fields_[lit.field].field.diffracted_power();
+  for (const Lit& lit : lit_) sum += fields_[lit.field].field.beam_mm2() * fields_[lit.field].field.diffracted_power();
   return lit_.empty() ? 0.0 : sum / beam_mm2();
 }
 

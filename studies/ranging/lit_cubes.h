@@ -26,7 +26,8 @@ struct CubeSet {
 /// docs/theory/polarisation.md; if the source is on the x axis, +y replaces +x.
 raytrace::ReturnFrame return_frame_of(const geometry::Vec3& to_source);
 
-/// Illuminated cubes at one wavelength, and their fields. Cubes that see light from equivalent directions share a field.
+/// Illuminated cubes at one wavelength, and their fields. Cubes that see light from equivalent directions share a
+/// field.
 class LitCubes {
  public:
   /// Traces the light. If the computation is cancelled, the result has no cubes.

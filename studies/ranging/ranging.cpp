@@ -236,8 +236,7 @@ struct RangingStudy::Prepared {
     point.index = corner.indices()[wavelength];
     point.incidence_deg = incidence_deg;
     point.azimuth_deg = azimuth_deg;
-    const Vec3 to_source =
-        geometry::direction_at(Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg));
+    const Vec3 to_source = geometry::direction_at(Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg));
     const LitCubes lit(set, to_source, wavelength, cancel);
     const double beam_m2 = 1e-6 * corner.entrance_mm2();
     const double wave_m = 1e-9 * point.index.wavelength_nm;
@@ -286,8 +285,8 @@ struct RangingStudy::Prepared {
     const std::optional<double>& pulse_ps = settings.request.pulse_ps;
     if (pulse_ps) point.response = response_of(point.echoes, *pulse_ps);
     if (settings.request.shots > 0)
-      point.shots = simulated_shots(
-          point.echoes, {settings.request.shots, settings.sent, pulse_ps, settings.request.seed}, cancel);
+      point.shots = simulated_shots(point.echoes,
+                                    {settings.request.shots, settings.sent, pulse_ps, settings.request.seed}, cancel);
   }
 };
 

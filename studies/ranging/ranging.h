@@ -48,7 +48,7 @@ struct RangingPoint {
   /// Cross section of a plane mirror with the area of the beam, 4 pi A^2 / wavelength^2. For an array, the sum over all
   /// lit cubes.
   double mirror_m2 = 0.0;
-  ByPolarisation<double> centre;                            ///< exactly back to the source
+  ByPolarisation<double> centre;                             ///< exactly back to the source
   std::optional<ByPolarisation<AnnulusStatistics>> annulus;  ///< over the annulus of velocity aberration
   double diffracted_power = 0.0;  ///< fraction of the incident power that returns and is diffracted
   /// Range correction of a single cube, and its usual approximation. Empty for arrays.
@@ -56,10 +56,10 @@ struct RangingPoint {
   std::optional<double> usual_range_correction_mm;
   // The following members are set for arrays.
   std::size_t lit_cubes = 0;
-  std::size_t traced_cubes = 0;       ///< number of different cubes and directions of light that were traced
-  std::vector<CubeEcho> echoes;       ///< light of each lit cube in the direction of the receiver
+  std::size_t traced_cubes = 0;  ///< number of different cubes and directions of light that were traced
+  std::vector<CubeEcho> echoes;  ///< light of each lit cube in the direction of the receiver
   RangeDistribution ranges;
-  PulseResponse response;             ///< empty for continuous light
+  PulseResponse response;  ///< empty for continuous light
   std::vector<Shot> shots;
 };
 
@@ -69,8 +69,8 @@ struct RangingMap {
   std::size_t points = 0;  ///< number of points along each axis
   /// Cross sections, row by row from the bottom, from left to right.
   std::vector<ByPolarisation<double>> values;
-  std::vector<double> ring_rad;             ///< radii of rings around the direction to the source
-  std::vector<AnnulusStatistics> ring_m2;   ///< total cross section on each ring
+  std::vector<double> ring_rad;            ///< radii of rings around the direction to the source
+  std::vector<AnnulusStatistics> ring_m2;  ///< total cross section on each ring
   /// Returns the angle of a column or row of the map.
   double angle_rad(std::size_t number) const;
 };
@@ -81,7 +81,7 @@ struct RangingSettings {
   raytrace::Stokes sent = raytrace::kUnpolarised;
   std::optional<Annulus> annulus;
   geometry::Vec2 observation_rad = geometry::Vec2::Zero();  ///< direction of the receiver for echoes and shots
-  std::vector<ArrayCube> cubes;  ///< empty for a single cube
+  std::vector<ArrayCube> cubes;                             ///< empty for a single cube
 
   bool is_array() const { return !cubes.empty(); }
 };

@@ -315,8 +315,8 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
 
 // ctest runs every tutorial as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
-                         testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts",
-                                         "ranging", "regulation", "cluster"),
+                         testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts", "ranging",
+                                         "regulation", "cluster"),
                          name_of);
 
 TEST(TutorialPages, AreAllFollowed) {
@@ -400,9 +400,10 @@ TEST(Documentation, LinksLeadSomewhere) {
 
 /// Names of the pages that show commands, in the order of `pages()`.
 const std::vector<std::string> kPagesWithCommands = {
-    "README", "calibrate", "explore",   "export",   "fabricate",  "forces", "image",    "init",    "inspect",     "job",
-    "list",   "manual",    "metrology", "optimize", "photometry", "plane",  "ranging",  "rays",    "report",      "roughness",
-    "rre",    "schema",    "sweep",     "tolerance", "turn",     "validate", "verify",  "commands", "gallery", "planing_file"};
+    "README",  "calibrate", "explore", "export",    "fabricate", "forces",      "image",      "init",
+    "inspect", "job",       "list",    "manual",    "metrology", "optimize",    "photometry", "plane",
+    "ranging", "rays",      "report",  "roughness", "rre",       "schema",      "sweep",      "tolerance",
+    "turn",    "validate",  "verify",  "commands",  "gallery",   "planing_file"};
 
 class Pages : public testing::TestWithParam<std::string> {};
 

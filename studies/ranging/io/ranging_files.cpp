@@ -63,14 +63,10 @@ Json ranges_json(const RangingPoint& p) {
 }
 
 Json point_json(const RangingPoint& p, bool is_array) {
-  Json json = {{"wavelength_nm", p.index.wavelength_nm},
-               {"incidence_deg", p.incidence_deg},
-               {"azimuth_deg", p.azimuth_deg},
-               {"index", p.index.index},
-               {"group_index", p.index.group_index},
-               {"mirror_m2", p.mirror_m2},
-               {"centre", centre_json(p.centre)},
-               {"diffracted_power", p.diffracted_power}};
+  Json json = {{"wavelength_nm", p.index.wavelength_nm}, {"incidence_deg", p.incidence_deg},
+               {"azimuth_deg", p.azimuth_deg},           {"index", p.index.index},
+               {"group_index", p.index.group_index},     {"mirror_m2", p.mirror_m2},
+               {"centre", centre_json(p.centre)},        {"diffracted_power", p.diffracted_power}};
   if (p.annulus) json["annulus"] = annulus_json(*p.annulus);
   if (p.range_correction_mm) json["range_correction_mm"] = *p.range_correction_mm;
   if (p.usual_range_correction_mm) json["usual_range_correction_mm"] = *p.usual_range_correction_mm;
@@ -135,7 +131,9 @@ std::string ranging_json(const RangingResult& result) {
   json["depth_mm"] = result.depth_mm;
   json["points"] = Json::array();
   for (const RangingPoint& p : result.points) json["points"].push_back(point_json(p, result.settings.is_array()));
-  Json rings = {{"radius_arcsec", Json::array()}, {"mean_m2", Json::array()}, {"min_m2", Json::array()},
+  Json rings = {{"radius_arcsec", Json::array()},
+                {"mean_m2", Json::array()},
+                {"min_m2", Json::array()},
                 {"max_m2", Json::array()}};
   for (std::size_t k = 0; k < result.map.ring_rad.size(); ++k) {
     rings["radius_arcsec"].push_back(result.map.ring_rad[k] * kArcsecPerRad);
@@ -224,9 +222,9 @@ std::string shots_csv(const RangingResult& result) {
 std::string ranging_table(const RangingResult& result) {
   const bool is_array = result.settings.is_array();
   std::string text = heading(result);
-  text += fmt::format("{:>9} {:>9} {:>7} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>14}\n", "nm", "incidence",
-                      "azimuth", "centre", "mean", "min", "max", "parallel", "crossed",
-                      is_array ? "centroid_mm" : "correction_mm");
+  text +=
+      fmt::format("{:>9} {:>9} {:>7} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>14}\n", "nm", "incidence", "azimuth",
+                  "centre", "mean", "min", "max", "parallel", "crossed", is_array ? "centroid_mm" : "correction_mm");
   for (const RangingPoint& p : result.points) {
     const auto statistic = [&](double AnnulusStatistics::*member) {
       return p.annulus ? millions(p.annulus->total.*member) : std::string("-");
@@ -235,9 +233,9 @@ std::string ranging_table(const RangingResult& result) {
       return of_annulus ? millions(of_annulus->mean) : share_text(of_centre);
     };
     const ByPolarisation<AnnulusStatistics> annulus = p.annulus.value_or(ByPolarisation<AnnulusStatistics>{});
-    const std::string range = !is_array                              ? fixed(*p.range_correction_mm, 4)
+    const std::string range = !is_array                         ? fixed(*p.range_correction_mm, 4)
                               : p.ranges.cross_section_m2 > 0.0 ? fixed(p.ranges.centroid_mm, 4)
-                                                                     : std::string("-");
+                                                                : std::string("-");
     text += fmt::format("{:>9} {:>9} {:>7} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>14}\n",
                         shortest(p.index.wavelength_nm), shortest(p.incidence_deg), shortest(p.azimuth_deg),
                         millions(p.centre.total), statistic(&AnnulusStatistics::mean),
@@ -246,12 +244,12 @@ std::string ranging_table(const RangingResult& result) {
   }
   if (result.points.empty() || result.points.front().shots.empty()) return text;
   const ShotSummary shots = summary_of(result.points.front().shots);
-  return text + fmt::format("towards the receiver {} without interference; {} shots: {} +- {}, from {} to {}; centroid {} "
-                            "+- {} mm\n",
-                            millions(result.points.front().ranges.cross_section_m2),
-                            result.points.front().shots.size(), millions(shots.mean_m2), millions(shots.deviation_m2),
-                            millions(shots.min_m2), millions(shots.max_m2), fixed(shots.centroid_mean_mm, 3),
-                            fixed(shots.centroid_deviation_mm, 3));
+  return text + fmt::format(
+                    "towards the receiver {} without interference; {} shots: {} +- {}, from {} to {}; centroid {} "
+                    "+- {} mm\n",
+                    millions(result.points.front().ranges.cross_section_m2), result.points.front().shots.size(),
+                    millions(shots.mean_m2), millions(shots.deviation_m2), millions(shots.min_m2),
+                    millions(shots.max_m2), fixed(shots.centroid_mean_mm, 3), fixed(shots.centroid_deviation_mm, 3));
 }
 
 }  // namespace retrace::studies

@@ -1,4 +1,5 @@
-// Far fields of single cube corners, compared with an independent model of the six sectors, and with Parseval's theorem.
+// Far fields of single cube corners, compared with an independent model of the six sectors, and with Parseval's
+// theorem.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -92,8 +93,7 @@ TEST(CubeField, StokesParametersAgreeWithSixSectors) {
     const std::vector<DirectionField> computed = field.at(directions_around(model.to_source(), offsets));
     const Stokes sent = random_polarisation(random);
     double peak = 0.0;
-    for (const SectorModel::Jones& jones : expected)
-      peak = std::max(peak, studies::returned_stokes(jones, sent).i);
+    for (const SectorModel::Jones& jones : expected) peak = std::max(peak, studies::returned_stokes(jones, sent).i);
     double worst = 0.0;
     for (std::size_t k = 0; k < expected.size(); ++k) {
       const Stokes a = studies::returned_stokes(expected[k], sent);
@@ -184,8 +184,8 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
     const auto phase = [&](const studies::CubeIndex& at) {
       return corner.depth_mm() * std::sqrt(at.index * at.index - sine * sine) / at.wavelength_nm;
     };
-    const double group = (phase(indices[0]) - phase(indices[2])) /
-                         (1.0 / indices[0].wavelength_nm - 1.0 / indices[2].wavelength_nm);
+    const double group =
+        (phase(indices[0]) - phase(indices[2])) / (1.0 / indices[0].wavelength_nm - 1.0 / indices[2].wavelength_nm);
     EXPECT_NEAR(studies::range_correction_mm(corner.depth_mm(), indices[1].index, indices[1].group_index, sine), group,
                 1e-6);
     // Without dispersion, the usual formula is exact.

@@ -66,7 +66,9 @@ TEST(CubesFile, RotationsHaveTheDocumentedAxes) {
 }
 
 TEST(CubesFile, WrongFilesAreRefusedWithLineAndKey) {
-  const auto refused = [](const std::string& text) { return refusal_of([&] { parse_cubes(kSchema + text, "c.toml"); }); };
+  const auto refused = [](const std::string& text) {
+    return refusal_of([&] { parse_cubes(kSchema + text, "c.toml"); });
+  };
   EXPECT_EQ(refused(""), "c.toml");
   EXPECT_EQ(refused("[[ring]]\ncount = 3\n"), "c.toml:2: ring[1].radius_mm");
   EXPECT_EQ(refused("[[ring]]\nradius_mm = -1\ncount = 3\n"), "c.toml:3: ring[1].radius_mm");

@@ -107,7 +107,8 @@ TEST(RangingArray, CubesWithTheSameIncidenceShareOneTrace) {
 TEST(RangingArray, RangesFollowFromPositionsAndPaths) {
   const CubeSet set = set_of(random_array(5));
   const Vec3 to_source = Vec3(-0.2, 0.1, 1.0).normalized();
-  const std::vector<CubeEcho> echoes = LitCubes(set, to_source, 0, nullptr).echoes(Vec2::Zero(), raytrace::kUnpolarised);
+  const std::vector<CubeEcho> echoes =
+      LitCubes(set, to_source, 0, nullptr).echoes(Vec2::Zero(), raytrace::kUnpolarised);
   ASSERT_EQ(echoes.size(), 5u);
   double sum = 0.0, moment = 0.0;
   for (const CubeEcho& echo : echoes) {
@@ -174,8 +175,7 @@ TEST(RangingShots, ContinuousLightHasTheMomentsOfRandomPhasors) {
 
 TEST(RangingShots, ShortPulsesDoNotInterfere) {
   const std::vector<CubeEcho> echoes = equal_echoes(6, 30.0);
-  for (const studies::Shot& shot :
-       studies::simulated_shots(echoes, {10, raytrace::kUnpolarised, 5.0, 1}, nullptr)) {
+  for (const studies::Shot& shot : studies::simulated_shots(echoes, {10, raytrace::kUnpolarised, 5.0, 1}, nullptr)) {
     EXPECT_NEAR(shot.cross_section_m2, 6 * 4e4, 1e-3);
     EXPECT_NEAR(shot.centroid_mm, 75.0, 1e-6);
   }
@@ -259,8 +259,8 @@ TEST(Ranging, PolarisationsAddUpToTheTotal) {
 
 /// Mirrors reverse the sense of circular light, and keep linear light.
 TEST(Ranging, MirrorsCrossCircularLight) {
-  const design::Design mirrors =
-      design::with(cube_design("0"), std::vector<std::string>{"idealisation.facets=mirror", "idealisation.entrance=lossless"});
+  const design::Design mirrors = design::with(
+      cube_design("0"), std::vector<std::string>{"idealisation.facets=mirror", "idealisation.entrance=lossless"});
   RangingRequest request = small_map();
   request.polarisation = "right";
   const auto circular = studies::RangingStudy(mirrors, request).run().points[0];
@@ -292,9 +292,10 @@ TEST(Ranging, CubesWithOwnErrorsReplaceThoseOfTheDesign) {
   RangingRequest request = small_map();
   request.cubes = "cubes.toml";
   const auto array = studies::RangingStudy(cube_design("0"), request, {cube}).run().points[0];
-  const auto alone = studies::RangingStudy(cube_design("[0.03333333333333333, 0.016666666666666666, 0.05]"), small_map())
-                         .run()
-                         .points[0];
+  const auto alone =
+      studies::RangingStudy(cube_design("[0.03333333333333333, 0.016666666666666666, 0.05]"), small_map())
+          .run()
+          .points[0];
   EXPECT_NEAR(array.centre.total, alone.centre.total, 1e-9 * alone.mirror_m2);
 }
 

@@ -11,7 +11,6 @@
 namespace retrace::test::ranging_command_test {
 namespace {
 
-
 const std::string kCube =
     "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
     "\"single\"\n[body]\nmaterial = \"fused-silica\"\nthickness_mm = 0.5\n[light]\nwavelength_nm = 532\n";
@@ -25,9 +24,9 @@ void write_inputs(const TemporaryFolder& folder) {
 TEST(RangingCommand, WritesPointsMapAndDrawings) {
   const TemporaryFolder folder;
   write_inputs(folder);
-  const Outcome outcome = retrace(folder, {"ranging", "cube.toml", "--wavelength", "532,1064", "--incidence", "0,10",
-                                           "--orbit-km", "5860", "--polarisation", "linear", "--map-points", "11", "-o",
-                                           "out"});
+  const Outcome outcome =
+      retrace(folder, {"ranging", "cube.toml", "--wavelength", "532,1064", "--incidence", "0,10", "--orbit-km", "5860",
+                       "--polarisation", "linear", "--map-points", "11", "-o", "out"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"cube.toml", "out", "out/map.csv", "out/map.png", "out/map.svg",
                                                       "out/ranging.csv", "out/ranging.json", "out/rings.png",
@@ -47,8 +46,8 @@ TEST(RangingCommand, WritesPointsMapAndDrawings) {
 TEST(RangingCommand, ArraysHaveCubesPulsesAndShots) {
   const TemporaryFolder folder;
   write_inputs(folder);
-  const Arguments arguments = {"ranging", "cube.toml", "--cubes", "ring.toml", "--pulse-ps", "100", "--shots", "50",
-                               "--incidence", "10", "--map-points", "11", "-o", "out"};
+  const Arguments arguments = {"ranging", "cube.toml",   "--cubes", "ring.toml",    "--pulse-ps", "100", "--shots",
+                               "50",      "--incidence", "10",      "--map-points", "11",         "-o",  "out"};
   const Outcome outcome = retrace(folder, arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* const name : {"cubes.csv", "response.csv", "response.svg", "shots.csv"})
@@ -68,8 +67,8 @@ TEST(RangingCommand, ArraysHaveCubesPulsesAndShots) {
 TEST(RangingCommand, CubesOnTheFarSideAreDark) {
   const TemporaryFolder folder;
   write_inputs(folder);
-  const Json json = retrace_json(folder, {"ranging", "cube.toml", "--cubes", "ring.toml", "--incidence", "180",
-                                          "--aberration-arcsec", "1,2"});
+  const Json json = retrace_json(
+      folder, {"ranging", "cube.toml", "--cubes", "ring.toml", "--incidence", "180", "--aberration-arcsec", "1,2"});
   EXPECT_EQ(json["points"][0]["ranges"]["lit_cubes"], 0);
   EXPECT_EQ(json["points"][0]["centre"]["total_m2"], 0.0);
 }
@@ -77,9 +76,10 @@ TEST(RangingCommand, CubesOnTheFarSideAreDark) {
 TEST(RangingCommand, WrongOptionsAreRefused) {
   const TemporaryFolder folder;
   write_inputs(folder);
-  folder.write("prism.toml",
-               "schema = \"retrace.design/1\"\n[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement "
-               "= \"single\"\n[body]\nthickness_mm = 1\n");
+  folder.write(
+      "prism.toml",
+      "schema = \"retrace.design/1\"\n[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement "
+      "= \"single\"\n[body]\nthickness_mm = 1\n");
   folder.write("array.toml",
                "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\nextent = "
                "\"infinite\"\n[body]\nthickness_mm = 1\n");

@@ -182,7 +182,8 @@ class SectorModel {
     const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(gram).operatorSqrt();
     for (int i = 0; i < 3; ++i) {
       normals_[static_cast<std::size_t>(i)] = Vec3::Zero();
-      for (int j = 0; j < 3; ++j) normals_[static_cast<std::size_t>(i)] += root(i, j) * edges_[static_cast<std::size_t>(j)];
+      for (int j = 0; j < 3; ++j)
+        normals_[static_cast<std::size_t>(i)] += root(i, j) * edges_[static_cast<std::size_t>(j)];
     }
   }
 
