@@ -14,9 +14,9 @@ std::span<const Command> commands() {
       rre_command(),       inspect_command(), photometry_command(), roughness_command(), metrology_command(),
       sweep_command(),     job_command(),     fabricate_command(),  optimize_command(),  compose_command(),
       tolerance_command(), verify_command(),  calibrate_command(),  correct_command(),   forces_command(),
-      turn_command(),      plane_command(),   image_command(),      rays_command(),      export_command(),
-      report_command(),    explore_command(), validate_command(),   init_command(),      list_command(),
-      schema_command(),    manual_command(),  completion_command()};
+      turn_command(),      plane_command(),   image_command(),      ranging_command(),   rays_command(),
+      export_command(),    report_command(),  explore_command(),    validate_command(),  init_command(),
+      list_command(),      schema_command(),  manual_command(),     completion_command()};
   return all;
 }
 

@@ -29,6 +29,7 @@ Command optimize_command();
 Command compose_command();
 Command photometry_command();
 Command plane_command();
+Command ranging_command();
 Command rays_command();
 Command report_command();
 Command roughness_command();

@@ -26,7 +26,7 @@ add_custom_command(
 set(schemas "${PROJECT_BINARY_DIR}/share/retrace_schemas")
 file(MAKE_DIRECTORY "${schemas}")
 set(schema_files "")
-foreach(format IN ITEMS design job machine materials planed_part process study turned_part)
+foreach(format IN ITEMS cubes design job machine materials planed_part process study turned_part)
   add_custom_command(
     OUTPUT "${schemas}/${format}.schema.json"
     COMMAND retrace schema ${format} --quiet --out "${schemas}"

@@ -49,6 +49,9 @@ void assign(MaterialRequest& request, std::string_view field, const FieldValue& 
 void assign(PhotometryRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
+void assign(RangingRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
 void assign(RaysRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }

@@ -9,6 +9,7 @@
 #include "requests/metrology.h"
 #include "requests/part.h"
 #include "requests/photometry.h"
+#include "requests/ranging.h"
 #include "requests/rays.h"
 #include "requests/roughness.h"
 #include "requests/row.h"
@@ -19,9 +20,10 @@
 namespace retrace::requests {
 
 /// Tuple of all types of requests, for templates that iterate over the types.
-using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest,
-                               MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RaysRequest,
-                               TraceRequest, RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
+using AllRequests =
+    std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest, MetrologyRequest,
+               SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest, TraceRequest,
+               RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -41,6 +43,8 @@ template <>
 const Request& description<MaterialRequest>();
 template <>
 const Request& description<PhotometryRequest>();
+template <>
+const Request& description<RangingRequest>();
 template <>
 const Request& description<RaysRequest>();
 template <>

@@ -16,16 +16,16 @@
 #include "fabrication/turning/io/part_files.h"
 #include "materials/io/material_library.h"
 #include "studies/quantity/io/study_format.h"
+#include "studies/ranging/io/cubes_reader.h"
 
 namespace retrace::app {
 namespace {
 
 /// Returns the file formats that have a schema, sorted by name.
 std::vector<const schema::Format*> formats() {
-  return {&design::design_format(),           &fabrication::job_format(),
-          &fabrication::machine_format(),     &materials::materials_format(),
-          &fabrication::planed_part_format(), &fabrication::process_format(),
-          &studies::study_format(),           &fabrication::turning::turned_part_format()};
+  return {&studies::cubes_format(),       &design::design_format(),       &fabrication::job_format(),
+          &fabrication::machine_format(), &materials::materials_format(), &fabrication::planed_part_format(),
+          &fabrication::process_format(), &studies::study_format(),       &fabrication::turning::turned_part_format()};
 }
 
 struct SchemaOptions {

@@ -14,7 +14,7 @@ namespace {
 
 /// Suffixes of names, and the unit that each suffix denotes. If one suffix is the end of another, the longer one comes
 /// first.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits = {{{"_mm_per_min", "mm/min"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kUnits = {{{"_mm_per_min", "mm/min"},
                                                                                    {"_mm_per_s2", "mm/s^2"},
                                                                                    {"_mm_per_s3", "mm/s^3"},
                                                                                    {"_mm_per_s", "mm/s"},
@@ -26,7 +26,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits =
                                                                                    {"_nm", "nm"},
                                                                                    {"_deg", "degrees"},
                                                                                    {"_arcmin", "arc minutes"},
+                                                                                   {"_arcsec", "arc seconds"},
+                                                                                   {"_km", "km"},
                                                                                    {"_percent", "percent"},
+                                                                                   {"_ps", "ps"},
                                                                                    {"_s", "s"}}};
 
 }  // namespace

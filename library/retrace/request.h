@@ -14,6 +14,7 @@
 #include "requests/metrology.h"
 #include "requests/part.h"
 #include "requests/photometry.h"
+#include "requests/ranging.h"
 #include "requests/rays.h"
 #include "requests/rre.h"
 #include "requests/study.h"
@@ -38,6 +39,7 @@ RETRACE_API void assign(MetrologyRequest& request, std::string_view field, const
 RETRACE_API void assign(SolidRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(MaterialRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(PhotometryRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(RangingRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RaysRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(TraceRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RreRequest& request, std::string_view field, const FieldValue& value);

@@ -24,6 +24,7 @@
 #include "retrace/metrology.h"
 #include "retrace/part.h"
 #include "retrace/photometry.h"
+#include "retrace/ranging.h"
 #include "retrace/rays.h"
 #include "retrace/report.h"
 #include "retrace/request.h"
@@ -163,6 +164,25 @@ void bind_photometry(py::module_& module) {
       return compared ? photometry(design, *compared, request, running) : photometry(design, request, running);
     });
   });
+}
+
+void bind_ranging(py::module_& module) {
+  request_class<RangingRequest>(module, "RangingRequest");
+  result_class<RangingResult>(module, "RangingResult")
+      .def_readonly("complete", &RangingResult::complete)
+      .def_readonly("csv", &RangingResult::csv)
+      .def_readonly("map_csv", &RangingResult::map_csv)
+      .def_readonly("cubes_csv", &RangingResult::cubes_csv)
+      .def_readonly("response_csv", &RangingResult::response_csv)
+      .def_readonly("shots_csv", &RangingResult::shots_csv)
+      .def_readonly("map", &RangingResult::map)
+      .def_readonly("rings", &RangingResult::rings)
+      .def_readonly("response", &RangingResult::response);
+  module.def("ranging",
+             [](const Design& design, const RangingRequest& request, const py::object& progress, unsigned threads) {
+               return watched(progress, threads,
+                              [design, request](const Running& running) { return ranging(design, request, running); });
+             });
 }
 
 void bind_part(py::module_& module) {
@@ -426,6 +446,7 @@ PYBIND11_MODULE(_core, module) {
   bind_design(module);
   bind_rre(module);
   bind_photometry(module);
+  bind_ranging(module);
   bind_part(module);
   bind_making(module);
   bind_studies(module);

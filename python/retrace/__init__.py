@@ -35,6 +35,7 @@ from ._part import (
     inspect,
     mesh,
 )
+from ._ranging import CrossSectionMap, RangingResult, ranging
 from ._rays import RayAccount, RaysResult, TracedRays, rays, trace
 from ._report import Page, report
 from ._results import Columns, Drawing, Result
@@ -55,6 +56,7 @@ __all__ = [
     "BudgetError",
     "CoefficientMap",
     "Columns",
+    "CrossSectionMap",
     "Design",
     "Drawing",
     "Error",
@@ -74,6 +76,7 @@ __all__ = [
     "Page",
     "PhotometryResult",
     "PolarMap",
+    "RangingResult",
     "RayAccount",
     "RaysResult",
     "Result",
@@ -93,6 +96,7 @@ __all__ = [
     "metrology",
     "optimize",
     "photometry",
+    "ranging",
     "rays",
     "report",
     "rre",

@@ -38,6 +38,7 @@ struct ForcesResult;
 struct MetrologyResult;
 struct PhotometryResult;
 struct PlaningResult;
+struct RangingResult;
 struct RoadResult;
 struct RoughnessResult;
 struct RreResult;
@@ -111,6 +112,18 @@ MixturePlot composition_plot(const studies::Study& study, const studies::Compose
 /// Returns a plot with four panels: the measured surface without its form, its roughness, its waviness, and its power
 /// spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);
+
+/// Returns maps of the cross section over the far field of the first point: all light and, if polarised light is sent,
+/// the light of both polarisations.
+/// \pre the result has a map
+ImagePlot ranging_map_plot(const studies::RangingResult& result);
+/// Returns a plot of the cross section over the angle from the direction to the source: the mean, the minimum and the
+/// maximum on rings.
+/// \pre the result has a map
+LinePlot ranging_rings_plot(const studies::RangingResult& result);
+/// Returns a plot of the response of an array to a pulse.
+/// \pre the first point has a response
+LinePlot ranging_response_plot(const studies::RangingResult& result);
 
 // Plots and pictures of a detector and a camera.
 

@@ -24,6 +24,8 @@ inline auto appender(std::vector<ValidationRow>& rows, const std::string& topic,
 std::vector<ValidationRow> light_validation();
 /// Returns rows for balls with mirrors.
 std::vector<ValidationRow> ball_validation();
+/// Returns rows for cross sections of cube corners in laser ranging.
+std::vector<ValidationRow> ranging_validation();
 /// Returns rows for materials, roughness of facets and scatter.
 std::vector<ValidationRow> surface_validation();
 /// Returns rows for kinematics, cuts and machining times.

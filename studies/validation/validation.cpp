@@ -21,8 +21,8 @@ bool ValidationResult::holds() const {
 
 std::vector<ValidationRow> validation_rows() {
   std::vector<ValidationRow> all;
-  for (const auto rows :
-       {light_validation, ball_validation, surface_validation, chisel_validation, force_validation, turning_validation})
+  for (const auto rows : {light_validation, ball_validation, ranging_validation, surface_validation, chisel_validation,
+                          force_validation, turning_validation})
     for (ValidationRow& row : rows()) all.push_back(std::move(row));
   return all;
 }

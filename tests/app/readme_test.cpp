@@ -315,7 +315,7 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
 
 // ctest runs every tutorial as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
-                         testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts",
+                         testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts", "ranging",
                                          "regulation", "cluster"),
                          name_of);
 
@@ -325,7 +325,7 @@ TEST(TutorialPages, AreAllFollowed) {
     names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "lamp", "measured_facet", "nc_program",
-                                             "regulation", "test_cuts"}));
+                                             "ranging", "regulation", "test_cuts"}));
 }
 
 TEST(TutorialPages, AreReadStepByStep) {
@@ -400,9 +400,10 @@ TEST(Documentation, LinksLeadSomewhere) {
 
 /// Names of the pages that show commands, in the order of `pages()`.
 const std::vector<std::string> kPagesWithCommands = {
-    "README", "calibrate", "explore",   "export",   "fabricate",  "forces", "image",    "init",    "inspect",     "job",
-    "list",   "manual",    "metrology", "optimize", "photometry", "plane",  "rays",     "report",  "roughness",   "rre",
-    "schema", "sweep",     "tolerance", "turn",     "validate",   "verify", "commands", "gallery", "planing_file"};
+    "README",  "calibrate", "explore", "export",    "fabricate", "forces",      "image",      "init",
+    "inspect", "job",       "list",    "manual",    "metrology", "optimize",    "photometry", "plane",
+    "ranging", "rays",      "report",  "roughness", "rre",       "schema",      "sweep",      "tolerance",
+    "turn",    "validate",  "verify",  "commands",  "gallery",   "planing_file"};
 
 class Pages : public testing::TestWithParam<std::string> {};
 

@@ -15,6 +15,7 @@ TEST(SchemaCommand, ListsTheFormats) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out,
             "name         schema                 title\n"
+            "cubes        retrace.cubes/1        Cubes of an array for ranging\n"
             "design       retrace.design/1       Design of a retroreflector array\n"
             "job          retrace.job/1          Fabrication job\n"
             "machine      retrace.machine/1      Machine with five axes\n"
@@ -25,7 +26,7 @@ TEST(SchemaCommand, ListsTheFormats) {
             "turned_part  retrace.turned_part/1  Freeform surface, turned\n");
   const Json json = retrace_json(folder, {"schema"});
   EXPECT_EQ(json["schema"], "retrace.formats/1");
-  EXPECT_EQ(json["formats"][2],
+  EXPECT_EQ(json["formats"][3],
             (Json{{"name", "machine"}, {"schema", "retrace.machine/1"}, {"title", "Machine with five axes"}}));
 }
 

@@ -17,6 +17,7 @@
 #include "retrace/metrology.h"
 #include "retrace/part.h"
 #include "retrace/photometry.h"
+#include "retrace/ranging.h"
 #include "retrace/rays.h"
 #include "retrace/report.h"
 #include "retrace/rre.h"
@@ -370,6 +371,24 @@ TEST(Library, SurfacesAreMeasuredFromFilesAndMemory) {
   request.x_pixel_um = of_file.x_pixel_um;
   const Json again = Json::parse(metrology(of_file.surface, request).json);
   EXPECT_NEAR(again["sa_nm"].get<double>(), Json::parse(of_file.json)["sa_nm"].get<double>(), 1e-9);
+}
+
+TEST(Library, CubeCornersAreRanged) {
+  const Design cube = Design::load(example("ranging/satellite_cube.toml"));
+  RangingRequest request;
+  request.cubes = example("ranging/sphere.toml");
+  request.incidence_deg = {30.0};
+  request.orbit_km = 5860.0;
+  request.map_points = 5;
+  const RangingResult array = ranging(cube, request);
+  const Json point = Json::parse(array.json)["points"][0];
+  ASSERT_EQ(array.points.size(), 1U);
+  EXPECT_EQ(*array.points[0].mean_m2, point["annulus"]["total"]["mean_m2"].get<double>());
+  EXPECT_EQ(*array.points[0].centroid_mm, point["ranges"]["centroid_mm"].get<double>());
+  EXPECT_FALSE(array.points[0].range_correction_mm);
+  EXPECT_TRUE(static_cast<bool>(array.map));
+  request.cubes = "missing.toml";
+  EXPECT_THROW(ranging(cube, request), InputError);
 }
 
 TEST(Library, PicturesAreNumbers) {

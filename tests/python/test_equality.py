@@ -7,6 +7,7 @@ import re
 import tempfile
 import unittest
 
+import numpy as np
 import program
 import retrace as rt
 
@@ -129,6 +130,22 @@ class Equality(unittest.TestCase):
                 **program.RED_R150,
             ),
             least=4,
+        )
+
+    def test_ranging(self):
+        file = program.example("ranging/satellite_cube.toml")
+        cubes = program.example("ranging/sphere.toml")
+        self.assertEqual(
+            program.answer(rt.ranging, file, wavelength_nm=[532, 1064], orbit_km=5860),
+            program.document("ranging", file, "--wavelength=532,1064", "--orbit-km=5860"),
+        )
+        found = rt.ranging(file, cubes=cubes, pulse_ps=50, shots=20, polarisation="linear")
+        self.assertEqual(len(found.cubes["range_mm"]), found.points.ranges.lit_cubes[0])
+        self.assertEqual(len(found.shots["centroid_mm"]), 20)
+        far_field = found.map
+        self.assertEqual(far_field.total_m2.shape, (81, 81))
+        np.testing.assert_allclose(
+            far_field.parallel_m2 + far_field.crossed_m2, far_field.total_m2, rtol=1e-6
         )
 
     def test_inspect(self):

@@ -13,6 +13,7 @@ from retrace import _core
 from retrace._fields import FIELDS
 
 BRICK = str(program.EXAMPLES / "rtp_brick_2mm.toml")
+CUBE = str(program.EXAMPLES / "ranging/satellite_cube.toml")
 RAYS = ["rays", BRICK, "--emitter=lambertian"]
 HEIGHTS = str(program.EXAMPLES / "facet_height_map.txt")
 STUDY = str(program.EXAMPLES / "studies/element_base.toml")
@@ -67,6 +68,7 @@ CALLS = {
         ["verify", JOB, PROGRAM],
     ),
     "study": (partial(rt.sweep, STUDY), _core.StudyRequest, None),
+    "ranging": (partial(rt.ranging, CUBE), _core.RangingRequest, ["ranging", CUBE]),
     "rays": (partial(rt.rays, BRICK, emitter="lambertian"), _core.RaysRequest, RAYS),
     "trace": (partial(rt.trace, BRICK, [[0, 0, 5]], [[0, 0, -1]]), _core.TraceRequest, None),
 }

@@ -31,7 +31,7 @@ MOST_LINES = 200  # maximum number of lines of a file that are shown
 # are not named individually. A dictionary within a section is a second level of the navigation.
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
-    "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/lamp.md",
+    "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/lamp.md", "docs/tutorials/ranging.md",
                   "docs/tutorials/nc_program.md", "docs/tutorials/test_cuts.md", "docs/tutorials/measured_facet.md", "docs/tutorials/cluster.md",
                   "docs/tutorials/*.md"],
     "Notebooks": ["examples/notebooks/*.md"],
@@ -246,6 +246,9 @@ def question(file, text):
     if schema == "retrace.study/1":
         design = value_of(text, "design") or re.search(r'key = "design"\nvalues = \["([^"]*)"', text).group(1)
         return ["inspect", (file.parent / design).resolve()], ["view.png", "entrance_surface.svg", "plan.svg"]
+    if schema == "retrace.cubes/1":
+        cube = file.parent / "satellite_cube.toml"
+        return ["ranging", cube, "--cubes", file, "--map-points", 41], ["map.png"]
     if schema.startswith("retrace.turn"):
         return ["turn", file], ["maps.png", "profile.svg"]
     if schema.startswith("retrace.plan"):

@@ -1,0 +1,45 @@
+#pragma once
+
+// Velocity aberration, and statistics of a function of the direction over the annulus of velocity aberration.
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "geometry/vec.h"
+
+namespace retrace::studies {
+
+/// Annulus of directions around the direction to the source, between two angles.
+struct Annulus {
+  double inner_rad = 0.0;
+  double outer_rad = 0.0;
+};
+
+/// Returns the velocity aberrations 2 v / c that stations on the ground observe for a satellite on a circular orbit
+/// around the Earth. The rotation of the Earth is neglected.
+/// \param height_km height of the orbit above the equator
+/// \param elevation_deg minimum elevation of the satellite at the station
+Annulus aberration_of_orbit(double height_km, double elevation_deg);
+
+/// A direction given by angles to the right and up, with its weight in a mean over solid angle.
+struct AnnulusPoint {
+  geometry::Vec2 angles_rad = geometry::Vec2::Zero();
+  double weight = 0.0;
+};
+/// Returns integration points of an annulus. The weights add up to 1.
+/// \param detail_rad width of the finest details of the integrand, > 0
+std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_rad);
+
+/// Mean and extremes of a function over an annulus.
+struct AnnulusStatistics {
+  double mean = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+};
+/// Function that returns one value for each direction, given by angles to the right and up in rad.
+using DirectionValues = std::function<std::vector<double>(const std::vector<geometry::Vec2>& angles_rad)>;
+/// Computes the statistics of a function. The extremes are refined beyond the sampling points.
+AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values);
+
+}  // namespace retrace::studies

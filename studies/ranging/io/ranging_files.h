@@ -1,0 +1,26 @@
+#pragma once
+
+// Output documents and tables of `retrace ranging`.
+
+#include <string>
+
+#include "studies/ranging/ranging.h"
+
+namespace retrace::studies {
+
+/// Returns the result as a document of the format `retrace.ranging/1`.
+std::string ranging_json(const RangingResult& result);
+/// Returns a table with one line for each point.
+std::string ranging_csv(const RangingResult& result);
+/// Returns the map of the first point as CSV with one line for each direction. Empty if there is no map.
+std::string ranging_map_csv(const RangingResult& result);
+/// Returns the cubes that the first point lights, with their ranges and cross sections. Empty for a single cube.
+std::string cubes_csv(const RangingResult& result);
+/// Returns the pulse response of the first point. Empty for continuous light.
+std::string response_csv(const RangingResult& result);
+/// Returns the single shots of the first point. Empty without shots.
+std::string shots_csv(const RangingResult& result);
+/// Returns the result as lines for the terminal.
+std::string ranging_table(const RangingResult& result);
+
+}  // namespace retrace::studies

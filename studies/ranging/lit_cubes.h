@@ -1,0 +1,82 @@
+#pragma once
+
+// Cubes of an array that return light from one direction, and the sum of their light in any direction of observation.
+
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/light/return_frame.h"
+#include "studies/ranging/array_response.h"
+#include "studies/ranging/cube_array.h"
+#include "studies/ranging/cube_corner.h"
+
+namespace retrace::studies {
+
+/// Cubes of an array that share the design of a CubeCorner, except for the errors of their dihedral angles.
+struct CubeSet {
+  std::vector<ArrayCube> cubes;
+  std::vector<CubeCorner> variants;          ///< designs with different errors of the dihedral angles
+  std::vector<std::size_t> variant_of_cube;  ///< index into `variants`, for each cube
+};
+
+/// Returns the frame of directions around the direction to the source. Its axes are those of
+/// docs/theory/polarisation.md; if the source is on the x axis, +y replaces +x.
+raytrace::ReturnFrame return_frame_of(const geometry::Vec3& to_source);
+
+/// Illuminated cubes at one wavelength, and their fields. Cubes that see light from equivalent directions share a
+/// field.
+class LitCubes {
+ public:
+  /// Traces the light. If the computation is cancelled, the result has no cubes.
+  /// \param to_source unit vector in the frame of the array
+  /// \param wavelength index into CubeCorner::indices()
+  LitCubes(const CubeSet& set, const geometry::Vec3& to_source, std::size_t wavelength, const Cancellation* cancel);
+
+  std::size_t count() const { return lit_.size(); }
+  /// Returns the number of directions and designs that were traced.
+  std::size_t traced() const { return fields_.size(); }
+  const raytrace::ReturnFrame& frame() const { return frame_; }
+  /// Returns the width of the finest details, or infinity if no light returns.
+  double detail_rad() const;
+  /// Returns the largest deflection of a beam in geometrical optics.
+  double deflection_rad() const;
+  /// Returns the mean of the diffracted fractions of the light on all cubes, weighted with their incident light.
+  double diffracted_power() const;
+  double undiffracted_power() const;
+  /// Returns the cosines of the angles of incidence of all lit cubes.
+  std::vector<double> cosines() const;
+  /// Returns the sum of the cross sections of all incident beams, in mm2.
+  double beam_mm2() const;
+
+  /// Returns the Stokes parameters of the light of all cubes without interference, in m2.
+  /// \param angles_rad directions as angles to the right and up from the direction to the source
+  std::vector<raytrace::Stokes> stokes(std::span<const geometry::Vec2> angles_rad, const raytrace::Stokes& sent,
+                                       const Cancellation* cancel) const;
+  /// Returns the light of each lit cube towards one receiver.
+  std::vector<CubeEcho> echoes(const geometry::Vec2& angles_rad, const raytrace::Stokes& sent) const;
+
+ private:
+  struct Lit {
+    std::size_t cube = 0;
+    std::size_t field = 0;  ///< index into fields_
+    /// Rotation, or rotation and reflection, from the frame of the array to that of the traced cube.
+    Eigen::Matrix3d traced_from_array = Eigen::Matrix3d::Identity();
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< axes of the traced light from those of the array
+    double range_mm = 0.0;
+  };
+  struct Traced {
+    std::size_t variant = 0;
+    geometry::Vec3 to_source;
+    CubeField field;
+  };
+  std::vector<DirectionField> fields_of(const Lit& lit, std::span<const geometry::Vec3> directions) const;
+
+  raytrace::ReturnFrame frame_;
+  std::vector<Lit> lit_;
+  std::vector<Traced> fields_;
+};
+
+}  // namespace retrace::studies

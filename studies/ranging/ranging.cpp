@@ -1,0 +1,331 @@
+#include "studies/ranging/ranging.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/number_format.h"
+#include "design/io/design_reader.h"
+#include "geometry/direction.h"
+#include "raytrace/light/aperture_kernel.h"
+#include "requests/descriptions.h"
+#include "studies/ranging/lit_cubes.h"
+
+namespace retrace::studies {
+namespace {
+
+using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
+
+constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;
+constexpr double kArcsecPerArcmin = 60.0;
+// Margin of the map around the annulus and the spots of geometrical optics, in widths of the finest details.
+constexpr double kMapMargin = 4.0;
+constexpr double kAnnulusMargin = 1.25;
+// Number of rings, and of points per ring, of the curve over the angle from the direction to the source.
+constexpr std::size_t kRings = 60;
+constexpr std::size_t kPointsPerRing = 72;
+// Maximum power, as a fraction of the incident light, that may be left out without a warning.
+constexpr double kMaxUndiffractedPower = 1e-3;
+// Degree of polarisation below which light counts as unpolarised.
+constexpr double kMinPolarisation = 1e-9;
+
+Stokes sent_stokes(const RangingRequest& request, const design::Design& design) {
+  const double twice = 2.0 * request.polarisation_deg * kRadPerDeg;
+  if (request.polarisation == "unpolarised") return raytrace::kUnpolarised;
+  if (request.polarisation == "linear") return {1.0, std::cos(twice), std::sin(twice), 0.0};
+  if (request.polarisation == "right") return {1.0, 0.0, 0.0, 1.0};
+  if (request.polarisation == "left") return {1.0, 0.0, 0.0, -1.0};
+  return design.light.polarisation;
+}
+
+std::optional<Annulus> annulus_of(const RangingRequest& request) {
+  if (request.orbit_km) return aberration_of_orbit(*request.orbit_km, request.elevation_deg);
+  if (!request.aberration_arcsec) return std::nullopt;
+  return Annulus{request.aberration_arcsec->front() * kRadPerArcsec, request.aberration_arcsec->back() * kRadPerArcsec};
+}
+
+Vec2 observation_of(const RangingRequest& request, const std::optional<Annulus>& annulus) {
+  if (request.observation_arcsec)
+    return kRadPerArcsec * Vec2(request.observation_arcsec->front(), request.observation_arcsec->back());
+  return annulus ? Vec2(0.5 * (annulus->inner_rad + annulus->outer_rad), 0.0) : Vec2(Vec2::Zero());
+}
+
+/// Divides returned light into light with the polarisation that was sent and light with the orthogonal one.
+ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sent) {
+  ByPolarisation<double> result{returned.i};
+  const double degree = std::hypot(sent.q, sent.u, sent.v);
+  if (degree < kMinPolarisation) return result;
+  const double along = (sent.q * returned.q + sent.u * returned.u + sent.v * returned.v) / degree;
+  result.parallel = 0.5 * (returned.i + along);
+  result.crossed = 0.5 * (returned.i - along);
+  return result;
+}
+
+/// Light of lit cubes in any direction, averaged over the discs of source and receiver.
+class ObservedLight {
+ public:
+  ObservedLight(const LitCubes& lit, const RangingSettings& settings, const Cancellation* cancel)
+      : lit_(lit), sent_(settings.sent), cancel_(cancel) {
+    const raytrace::PhotometricApertures apertures{Angle::from_rad(settings.request.source_arcsec * kRadPerArcsec),
+                                                   Angle::from_rad(settings.request.receiver_arcsec * kRadPerArcsec)};
+    if (apertures.source.rad() > 0.0 || apertures.receiver.rad() > 0.0)
+      nodes_ = raytrace::ApertureKernel(apertures).nodes(lit.detail_rad());
+    else
+      nodes_ = {{Vec2::Zero(), 1.0}};
+  }
+
+  std::vector<ByPolarisation<double>> at(const std::vector<Vec2>& angles_rad) const {
+    std::vector<Vec2> all;
+    for (const Vec2& angles : angles_rad)
+      for (const raytrace::ApertureKernel::Node& node : nodes_) all.push_back(angles + node.offset_rad);
+    const std::vector<Stokes> stokes = lit_.stokes(all, sent_, cancel_);
+    std::vector<ByPolarisation<double>> result;
+    for (std::size_t k = 0; k < angles_rad.size(); ++k) {
+      Stokes mean;
+      for (std::size_t node = 0; node < nodes_.size(); ++node)
+        mean += nodes_[node].weight * stokes[k * nodes_.size() + node];
+      result.push_back(by_polarisation(mean, sent_));
+    }
+    return result;
+  }
+
+  /// Returns the statistics of one component over an annulus. Empty if the component is not defined.
+  template <class Component>
+  std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
+    if (!component(at({Vec2::Zero()}).front())) return std::nullopt;
+    return statistics_over(annulus, lit_.detail_rad(), [&](const std::vector<Vec2>& angles_rad) {
+      std::vector<double> values;
+      for (const ByPolarisation<double>& value : at(angles_rad)) values.push_back(*component(value));
+      return values;
+    });
+  }
+
+ private:
+  const LitCubes& lit_;
+  Stokes sent_;
+  const Cancellation* cancel_;
+  std::vector<raytrace::ApertureKernel::Node> nodes_;
+};
+
+ByPolarisation<AnnulusStatistics> over_annulus(const ObservedLight& light, const Annulus& annulus) {
+  ByPolarisation<AnnulusStatistics> result;
+  result.total = *light.over(annulus, [](const auto& value) { return std::optional(value.total); });
+  result.parallel = light.over(annulus, [](const auto& value) { return value.parallel; });
+  result.crossed = light.over(annulus, [](const auto& value) { return value.crossed; });
+  return result;
+}
+
+RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const RangingSettings& settings) {
+  RangingMap map;
+  const double spots = lit.deflection_rad() + kMapMargin * lit.detail_rad();
+  const double outer = settings.annulus ? kAnnulusMargin * settings.annulus->outer_rad : 0.0;
+  map.half_width_rad =
+      settings.request.window_arcsec ? *settings.request.window_arcsec * kRadPerArcsec : std::max(outer, spots);
+  map.points = settings.request.map_points;
+  std::vector<Vec2> angles;
+  for (std::size_t row = 0; row < map.points; ++row)
+    for (std::size_t column = 0; column < map.points; ++column)
+      angles.emplace_back(map.angle_rad(column), map.angle_rad(row));
+  map.values = light.at(angles);
+  angles.clear();
+  for (std::size_t ring = 0; ring < kRings; ++ring) {
+    map.ring_rad.push_back(map.half_width_rad * static_cast<double>(ring) / static_cast<double>(kRings - 1));
+    for (std::size_t k = 0; k < kPointsPerRing; ++k) {
+      const double angle = kTwoPi * static_cast<double>(k) / static_cast<double>(kPointsPerRing);
+      angles.push_back(map.ring_rad.back() * Vec2(std::cos(angle), std::sin(angle)));
+    }
+  }
+  const std::vector<ByPolarisation<double>> values = light.at(angles);
+  for (std::size_t ring = 0; ring < kRings; ++ring) {
+    AnnulusStatistics of_ring{0.0, values[ring * kPointsPerRing].total, values[ring * kPointsPerRing].total};
+    for (std::size_t k = 0; k < kPointsPerRing; ++k) {
+      const double value = values[ring * kPointsPerRing + k].total;
+      of_ring.mean += value / static_cast<double>(kPointsPerRing);
+      of_ring.min = std::min(of_ring.min, value);
+      of_ring.max = std::max(of_ring.max, value);
+    }
+    map.ring_m2.push_back(of_ring);
+  }
+  return map;
+}
+
+/// Returns the design with other errors of the dihedral angles.
+design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
+  const std::vector<std::string> overrides = {
+      fmt::format("surface.dihedral_error_arcmin=[{}, {}, {}]", shortest(errors_arcsec[0] / kArcsecPerArcmin),
+                  shortest(errors_arcsec[1] / kArcsecPerArcmin), shortest(errors_arcsec[2] / kArcsecPerArcmin))};
+  return design::with(design, overrides);
+}
+
+std::vector<double> sorted_wavelengths(const RangingRequest& request, const design::Design& design) {
+  if (request.wavelength_nm.empty() && design.light.spectrum() != nullptr)
+    throw InputError(Field{"wavelength_nm"}, "must be given, because the light of the design has a spectrum");
+  std::vector<double> wavelengths = request.wavelength_nm;
+  std::sort(wavelengths.begin(), wavelengths.end());
+  wavelengths.erase(std::unique(wavelengths.begin(), wavelengths.end()), wavelengths.end());
+  return wavelengths;
+}
+
+/// Returns the cubes of a study: those of the array, or a single cube whose frame is the part frame.
+CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
+  const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
+  CubeSet set;
+  set.cubes = settings.is_array() ? settings.cubes : std::vector<ArrayCube>{{}};
+  set.variants.emplace_back(design, wavelengths, settings.request.entrance_reflections);
+  std::map<std::array<double, 3>, std::size_t> known;
+  for (const ArrayCube& cube : set.cubes) {
+    if (!cube.dihedral_error_arcsec) {
+      set.variant_of_cube.push_back(0);
+      continue;
+    }
+    const auto [it, is_new] = known.try_emplace(*cube.dihedral_error_arcsec, set.variants.size());
+    if (is_new)
+      set.variants.emplace_back(with_errors(design, *cube.dihedral_error_arcsec), wavelengths,
+                                settings.request.entrance_reflections);
+    set.variant_of_cube.push_back(it->second);
+  }
+  return set;
+}
+
+}  // namespace
+
+double RangingMap::angle_rad(std::size_t number) const {
+  return half_width_rad * (2.0 * static_cast<double>(number) / static_cast<double>(points - 1) - 1.0);
+}
+
+ShotSummary summary_of(const std::vector<Shot>& shots) {
+  ShotSummary summary;
+  if (shots.empty()) return summary;
+  const auto count = static_cast<double>(shots.size());
+  summary.min_m2 = summary.max_m2 = shots.front().cross_section_m2;
+  for (const Shot& shot : shots) {
+    summary.mean_m2 += shot.cross_section_m2 / count;
+    summary.centroid_mean_mm += shot.centroid_mm / count;
+    summary.min_m2 = std::min(summary.min_m2, shot.cross_section_m2);
+    summary.max_m2 = std::max(summary.max_m2, shot.cross_section_m2);
+  }
+  double squares = 0.0;
+  double centroid_squares = 0.0;
+  for (const Shot& shot : shots) {
+    squares += std::pow(shot.cross_section_m2 - summary.mean_m2, 2.0);
+    centroid_squares += std::pow(shot.centroid_mm - summary.centroid_mean_mm, 2.0);
+  }
+  const double freedom = std::max(1.0, count - 1.0);
+  summary.deviation_m2 = std::sqrt(squares / freedom);
+  summary.centroid_deviation_mm = std::sqrt(centroid_squares / freedom);
+  return summary;
+}
+
+struct RangingStudy::Prepared {
+  design::Design design;
+  RangingSettings settings;
+  CubeSet set;
+
+  /// Computes one point. Adds the map to `result` for the first point.
+  RangingPoint point_of(std::size_t wavelength, double incidence_deg, double azimuth_deg, RangingResult& result,
+                        const Cancellation* cancel) const {
+    const CubeCorner& corner = set.variants.front();
+    RangingPoint point;
+    point.index = corner.indices()[wavelength];
+    point.incidence_deg = incidence_deg;
+    point.azimuth_deg = azimuth_deg;
+    const Vec3 to_source = geometry::direction_at(Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg));
+    const LitCubes lit(set, to_source, wavelength, cancel);
+    const double beam_m2 = 1e-6 * corner.entrance_mm2();
+    const double wave_m = 1e-9 * point.index.wavelength_nm;
+    point.lit_cubes = lit.count();
+    point.traced_cubes = lit.traced();
+    for (const double cosine : lit.cosines())
+      point.mirror_m2 += 4.0 * std::numbers::pi * std::pow(beam_m2 * cosine / wave_m, 2.0);
+    if (!settings.is_array()) {
+      const double sine = std::sin(incidence_deg * kRadPerDeg);
+      point.range_correction_mm =
+          studies::range_correction_mm(corner.depth_mm(), point.index.index, point.index.group_index, sine);
+      point.usual_range_correction_mm =
+          studies::usual_range_correction_mm(corner.depth_mm(), point.index.group_index, sine);
+    }
+    if (lit.count() == 0) {
+      point.centre = by_polarisation({}, settings.sent);
+      if (settings.annulus) point.annulus = dark_annulus();
+      return point;
+    }
+    const ObservedLight light(lit, settings, cancel);
+    point.centre = light.at({Vec2::Zero()}).front();
+    if (settings.annulus) point.annulus = over_annulus(light, *settings.annulus);
+    point.diffracted_power = lit.diffracted_power();
+    if (result.map.values.empty()) result.map = map_of(light, lit, settings);
+    if (lit.undiffracted_power() > kMaxUndiffractedPower)
+      result.warnings.push_back(
+          {"undiffracted_light",
+           fmt::format("{:.2g} % of the light at {} nm, incidence {} and azimuth {} degrees is missing in the far "
+                       "field, because it consists of too many weak beams",
+                       100.0 * lit.undiffracted_power(), shortest(point.index.wavelength_nm), shortest(incidence_deg),
+                       shortest(azimuth_deg))});
+    if (settings.is_array()) add_echoes(lit, point, cancel);
+    return point;
+  }
+
+  ByPolarisation<AnnulusStatistics> dark_annulus() const {
+    ByPolarisation<AnnulusStatistics> dark;
+    if (!by_polarisation({}, settings.sent).parallel) return dark;
+    dark.parallel = dark.crossed = AnnulusStatistics{};
+    return dark;
+  }
+
+  void add_echoes(const LitCubes& lit, RangingPoint& point, const Cancellation* cancel) const {
+    point.echoes = lit.echoes(settings.observation_rad, settings.sent);
+    point.ranges = distribution_of(point.echoes);
+    const std::optional<double>& pulse_ps = settings.request.pulse_ps;
+    if (pulse_ps) point.response = response_of(point.echoes, *pulse_ps);
+    if (settings.request.shots > 0)
+      point.shots = simulated_shots(point.echoes,
+                                    {settings.request.shots, settings.sent, pulse_ps, settings.request.seed}, cancel);
+  }
+};
+
+RangingStudy::RangingStudy(design::Design design, const RangingRequest& request, std::vector<ArrayCube> cubes) {
+  requests::check(request);
+  const auto prepared = std::make_shared<Prepared>();
+  prepared->settings.request = request;
+  prepared->settings.sent = sent_stokes(request, design);
+  prepared->settings.annulus = annulus_of(request);
+  prepared->settings.observation_rad = observation_of(request, prepared->settings.annulus);
+  prepared->settings.cubes = std::move(cubes);
+  prepared->set = cube_set(design, prepared->settings);
+  prepared->design = std::move(design);
+  prepared_ = prepared;
+}
+
+RangingResult RangingStudy::run(Progress* progress, const Cancellation* cancel) const {
+  const auto start = std::chrono::steady_clock::now();
+  const RangingRequest& request = prepared_->settings.request;
+  const CubeCorner& corner = prepared_->set.variants.front();
+  RangingResult result;
+  result.design = prepared_->design;
+  result.settings = prepared_->settings;
+  result.depth_mm = corner.depth_mm();
+  result.entrance_mm2 = corner.entrance_mm2();
+  result.warnings = corner.warnings();
+  const std::size_t total = corner.indices().size() * request.incidence_deg.size() * request.azimuth_deg.size();
+  for (std::size_t wavelength = 0; wavelength < corner.indices().size(); ++wavelength)
+    for (const double incidence_deg : request.incidence_deg)
+      for (const double azimuth_deg : request.azimuth_deg) {
+        if (is_cancelled(cancel)) break;
+        RangingPoint point = prepared_->point_of(wavelength, incidence_deg, azimuth_deg, result, cancel);
+        if (is_cancelled(cancel)) break;
+        result.points.push_back(std::move(point));
+        if (progress != nullptr) progress->at(static_cast<double>(result.points.size()) / static_cast<double>(total));
+      }
+  result.complete = result.points.size() == total;
+  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace retrace::studies

@@ -1,0 +1,115 @@
+#pragma once
+
+// Cross sections and range corrections of single cube corners and of arrays of cube corners, for laser ranging.
+// `retrace ranging` runs this study.
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/warning.h"
+#include "design/design.h"
+#include "requests/ranging.h"
+#include "studies/ranging/aberration.h"
+#include "studies/ranging/array_response.h"
+#include "studies/ranging/cube_array.h"
+#include "studies/ranging/cube_corner.h"
+
+namespace retrace::studies {
+
+/// Cross sections in m2 by the polarisation of the returned light. `parallel` is light with the polarisation that was
+/// sent, `crossed` is light with the orthogonal polarisation. Both are empty if unpolarised light is sent.
+template <class Value>
+struct ByPolarisation {
+  Value total = {};
+  std::optional<Value> parallel = {};
+  std::optional<Value> crossed = {};
+};
+
+/// Mean and spread of single shots.
+struct ShotSummary {
+  double mean_m2 = 0.0;
+  double deviation_m2 = 0.0;  ///< standard deviation
+  double min_m2 = 0.0;
+  double max_m2 = 0.0;
+  double centroid_mean_mm = 0.0;       ///< mean of the centroids of all shots
+  double centroid_deviation_mm = 0.0;  ///< standard deviation of the centroids
+};
+ShotSummary summary_of(const std::vector<Shot>& shots);
+
+/// Result for one wavelength and one direction of light.
+struct RangingPoint {
+  CubeIndex index;
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+  /// Cross section of a plane mirror with the area of the beam, 4 pi A^2 / wavelength^2. For an array, the sum over all
+  /// lit cubes.
+  double mirror_m2 = 0.0;
+  ByPolarisation<double> centre;                             ///< exactly back to the source
+  std::optional<ByPolarisation<AnnulusStatistics>> annulus;  ///< over the annulus of velocity aberration
+  double diffracted_power = 0.0;  ///< fraction of the incident power that returns and is diffracted
+  /// Range correction of a single cube, and its usual approximation. Empty for arrays.
+  std::optional<double> range_correction_mm;
+  std::optional<double> usual_range_correction_mm;
+  // The following members are set for arrays.
+  std::size_t lit_cubes = 0;
+  std::size_t traced_cubes = 0;  ///< number of different cubes and directions of light that were traced
+  std::vector<CubeEcho> echoes;  ///< light of each lit cube in the direction of the receiver
+  RangeDistribution ranges;
+  PulseResponse response;  ///< empty for continuous light
+  std::vector<Shot> shots;
+};
+
+/// Map of the far field of the first point, and its means over rings.
+struct RangingMap {
+  double half_width_rad = 0.0;
+  std::size_t points = 0;  ///< number of points along each axis
+  /// Cross sections, row by row from the bottom, from left to right.
+  std::vector<ByPolarisation<double>> values;
+  std::vector<double> ring_rad;            ///< radii of rings around the direction to the source
+  std::vector<AnnulusStatistics> ring_m2;  ///< total cross section on each ring
+  /// Returns the angle of a column or row of the map.
+  double angle_rad(std::size_t number) const;
+};
+
+/// Settings of a ranging study, computed from a request.
+struct RangingSettings {
+  RangingRequest request;
+  raytrace::Stokes sent = raytrace::kUnpolarised;
+  std::optional<Annulus> annulus;
+  geometry::Vec2 observation_rad = geometry::Vec2::Zero();  ///< direction of the receiver for echoes and shots
+  std::vector<ArrayCube> cubes;                             ///< empty for a single cube
+
+  bool is_array() const { return !cubes.empty(); }
+};
+
+struct RangingResult {
+  design::Design design;
+  RangingSettings settings;
+  double depth_mm = 0.0;  ///< distance of the apex from the entrance face
+  double entrance_mm2 = 0.0;
+  std::vector<RangingPoint> points;  ///< by wavelength, then incidence, then azimuth
+  RangingMap map;
+  Warnings warnings;
+  bool complete = true;
+  double elapsed_s = 0.0;
+};
+
+/// Study of a design. The constructor checks the design and the request, and run() computes the points.
+class RangingStudy {
+ public:
+  /// \param cubes cubes of the file RangingRequest::cubes; empty without such a file
+  /// \throw InputError if the design is not a single cube corner, or for a request that is not allowed
+  RangingStudy(design::Design design, const RangingRequest& request, std::vector<ArrayCube> cubes = {});
+
+  RangingResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
+
+ private:
+  struct Prepared;
+  std::shared_ptr<const Prepared> prepared_;
+};
+
+}  // namespace retrace::studies
