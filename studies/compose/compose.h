@@ -142,10 +142,16 @@ compute::StoreLayout compose_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
+/// Chooses the best part from the cells that an interrupted search has evaluated, and from all other cells in the store.
+/// \pre compose() has returned an incomplete composition
+void choose_best_so_far(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
+                        Composition& composition);
+
 /// Searches for the mixture of cells that makes the best part. First, the family of cells is scanned, and `optimise`
 /// improves the best cells of the scan. Then cells are added that improve the mixture according to the dual prices of
 /// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
-/// already in the store are not computed again, and the result is the same.
+/// already in the store are not computed again, and the result is the same. An interrupted search returns its catalogue
+/// of cells, without a part. `observer` receives the best part of one kind of cell.
 /// \throw OutputError under the same conditions as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
                     OptimiseObserver* observer, const Cancellation* cancel);

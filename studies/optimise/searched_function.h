@@ -4,9 +4,10 @@
 
 #include <compare>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "studies/quantity/error_level.h"
 
 namespace retrace::studies {
 
@@ -21,17 +22,6 @@ struct SearchPoint {
       return combination < other.combination ? std::partial_ordering::less : std::partial_ordering::greater;
     return fractions <=> other.fractions;
   }
-};
-
-/// Accuracy of an observation, and the random numbers that it uses.
-struct ErrorLevel {
-  double scale = 1.0;  ///< target error of the observation, as a multiple of the target error of the study
-  /// Number of the stream of random numbers. Observations of different points with the same number use common random
-  /// numbers, so that their errors are similar and nearly cancel in differences.
-  std::uint32_t replicate = 0;
-
-  bool operator==(const ErrorLevel&) const = default;
-  auto operator<=>(const ErrorLevel&) const = default;
 };
 
 /// A point that is to be observed, with the accuracy of the observation.

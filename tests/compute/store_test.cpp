@@ -141,7 +141,10 @@ TEST_F(Store, ManyThreadsOfTwoProcessesShareThePoints) {
 }
 
 TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
-  { const ResultStore store(file(), layout(), IfExists::refuse); }
+  {
+    ResultStore store(file(), layout(), IfExists::refuse);
+    store.record(point(0));
+  }
   EXPECT_EQ(message(layout(), IfExists::refuse), "TMP/s.sqlite");
   EXPECT_EQ(message(layout(), IfExists::resume), "");
   StoreLayout changed = layout();
