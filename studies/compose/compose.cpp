@@ -292,6 +292,11 @@ class Composer {
       composition.infeasible_reason = why_none(composition, relaxed);
       return;
     }
+    if (request_.area_steps) {
+      std::vector<MixedCell> cells;
+      for (const FamilyCell& cell : composition.catalogue) cells.push_back(cell.mixed);
+      mixture = rounded_mixture(cells, rules(request_.max_zones), mixture, *request_.area_steps);
+    }
     composition.unlimited_merit = relaxed.merit;
     composition.best =
         PartOfZones{zones_of(composition, mixture), mixture, request_.max_zones.value_or(mixture.zones.size())};

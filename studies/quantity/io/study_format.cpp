@@ -350,6 +350,8 @@ constexpr Row kComposeRows[] = {
                                "Minimum fraction of the area for each zone of the part."}),
     renamed("most_share", Row{"max_area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
                               "Maximum fraction of the area for each zone."}),
+    {"area_fraction_step", Number{{.low = 0.001, .high = 0.5}}, kNone,
+     "Step of the area fractions of the best part, such as 0.01 or 0.05: each fraction is a multiple of it."},
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
      "Prices of quantities. The merit of a part is the minimum of all goals, minus the price for each unit of the "
      "quantity's mean over the part."},
