@@ -15,7 +15,7 @@ namespace {
 using studies::Variant;
 
 // Values of Series::look for designs.
-constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 7, kChosenLook = 1;
+constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
 
 std::string title_of_study(const studies::Study& study) {
   return study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title;

@@ -289,7 +289,7 @@ TEST(MachiningLimits, NewKeysAreChecked) {
   const auto rounding = [](const std::string& word) {
     return refusal_of([&] { noisy_study(hill, "rounding = " + word + "\n"); }, "read");
   };
-  EXPECT_EQ(rounding("\"digits\""), "examples/studies/study.toml:13: optimize.rounding");
+  EXPECT_EQ(rounding("\"digits\""), "examples/studies/study.toml:14: optimize.rounding");
   EXPECT_EQ(rounding("\"none\""), "read");
 }
 

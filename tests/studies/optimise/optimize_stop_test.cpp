@@ -40,13 +40,13 @@ TEST(OptimizeStop, AnInterruptWritesTheBestSoFar) {
   const TemporaryFolder folder;
   folder.write("part.toml", rough_design());
   folder.write("study.toml", rough_study());
-  const Child child(folder.path(), {RETRACE_PROGRAM, "optimize", "study.toml", "-o", "out", "--threads", "2"});
+  Child child(folder.path(), {RETRACE_PROGRAM, "optimize", "study.toml", "-o", "out", "--threads", "2"});
   const auto end = std::chrono::steady_clock::now() + patient(120);
   while (!fs::exists(folder.path() / "out/best.toml") && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   child.interrupt(SIGINT);
-  const Outcome outcome = const_cast<Child&>(child).wait(patient(60));
+  const Outcome outcome = child.wait(patient(60));
   if (outcome.code == 0) return;  // the run was faster than the interrupt
   EXPECT_EQ(outcome.code, 130);
   const Json json = folder.json("out/optimum.json");
@@ -80,12 +80,12 @@ TEST(OptimizeStop, ARunWithoutAnySuccessDoesNotBlockTheNextRun) {
            "\"\nfrom = 1\nto = 3\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[optimize]\n"
            "minimize = \"lens_thickness_mm\"\nscan = 5\n";
   };
-  // A glass plate of 1 to 3 mm cannot have an index of refraction as its thickness; all designs fail.
-  folder.write("study.toml", study("element.width_mm") + "[[quantity]]\nkind = \"tool_fit_mm\"\n");
+  // A wrong value in [machining] is refused before anything is written.
   folder.write("study.toml", study("array.overlap_percent") + "[machining]\ntool_width_mm = -1\n");
   EXPECT_EQ(refused_at(retrace(folder, {"optimize", "study.toml", "-o", "out"})),
             "study.toml:12: machining.tool_width_mm");
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
+  // All designs of this study fail.
   std::string failing = study("body.thickness_mm");
   failing.replace(failing.find("from = 1\nto = 3"), 15, "from = -3\nto = -1");
   folder.write("study.toml", failing);
