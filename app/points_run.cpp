@@ -19,7 +19,9 @@ namespace {
 /// Progress bar that also shows the number of points per second and the number of failed points.
 class PointsBar : public studies::SweepObserver {
  public:
-  PointsBar(RunText text, const CommonOptions& common) : bar_(std::move(text), common) {}
+  /// \param so_far function that returns a line about the finished points; may be empty
+  PointsBar(RunText text, const CommonOptions& common, std::function<std::string()> so_far)
+      : bar_(std::move(text), common), so_far_(std::move(so_far)) {}
 
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override {
     if (!began_) begun_with_ = done;
@@ -28,6 +30,12 @@ class PointsBar : public studies::SweepObserver {
     const double rate = elapsed_s > 0.0 ? static_cast<double>(done - begun_with_) / elapsed_s : 0.0;
     remark_ = fmt::format("  {}/{} points, {:.3g}/s, {} failed", done, total, rate, failed);
     at_fraction(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+    const auto now = std::chrono::steady_clock::now();
+    if (!so_far_ || now - last_line_ < kTimeBetweenLines || done == total) return;
+    bar_.write_lines(so_far_() + '\n');
+    // Reading many points takes time. Lines therefore become rarer as the run takes longer.
+    last_line_ = std::chrono::steady_clock::now();
+    last_line_ += kPauseFactor * (last_line_ - now);
   }
   void at_fraction(double share) override {
     share_ = std::max(share_, share);
@@ -35,7 +43,12 @@ class PointsBar : public studies::SweepObserver {
   }
 
  private:
+  static constexpr std::chrono::seconds kTimeBetweenLines{5};
+  static constexpr int kPauseFactor = 20;
+
   ProgressBar bar_;
+  std::function<std::string()> so_far_;
+  std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
   bool began_ = false;
   double share_ = 0.0;
   std::string remark_;
@@ -69,7 +82,9 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   compute::ResultStore store(file, sweep.layout(), if_exists_of(options));
   bool complete = false;
   {
-    PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common);
+    std::function<std::string()> so_far;
+    if (command.so_far) so_far = [&] { return command.so_far(store.points()); };
+    PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common, std::move(so_far));
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       const DistributeTasks share = distribute_among(session, slots(common), cancel);
       complete =

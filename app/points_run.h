@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/output.h"
 #include "app/shared_arguments.h"
@@ -22,6 +23,9 @@ struct PointsCommand {
   /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;
   std::string document;  ///< name of the JSON document in the output folder
+  /// Function that describes the result of the points that are finished so far, in one line. The line is written from
+  /// time to time during a long run. Empty: no such lines.
+  std::function<std::string(const std::vector<compute::StoredPoint>& points)> so_far = {};
   /// Function that adds further output files.
   /// \param result result of the computation; it has a value when the contents of the files are requested
   std::function<void(ResultFiles& files, const std::optional<studies::SweepResult>& result)> add_files;

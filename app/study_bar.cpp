@@ -11,6 +11,8 @@
 namespace retrace::app {
 namespace {
 
+constexpr std::chrono::seconds kTimeBetweenLines{5};
+
 bool has_tracing(const studies::Study& study, std::string_view kind) {
   return std::ranges::any_of(study.quantities,
                              [&](const auto& quantity) { return quantity->tracing().starts_with(kind); });
@@ -59,7 +61,24 @@ void SearchBar::at_fraction(double fraction) {
 }
 
 void SearchBar::at(std::size_t evaluated) {
-  bar_.count(fmt::format("{} {} evaluated", evaluated, of_));
+  bar_.count(fmt::format("{} {} evaluated{}", evaluated, of_, best_.empty() ? "" : ", best so far: " + best_));
+}
+
+void SearchBar::on_best(std::function<std::string(const studies::Variant&)> text,
+                        std::function<void(const studies::Variant&)> action) {
+  text_of_best_ = std::move(text);
+  at_best_ = std::move(action);
+}
+
+void SearchBar::at_best(const studies::Variant& best) {
+  if (text_of_best_) best_ = text_of_best_(best);
+  // Runs that end soon print no lines, because their results follow immediately.
+  const auto now = std::chrono::steady_clock::now();
+  if (!best_.empty() && now - last_line_ > kTimeBetweenLines) {
+    bar_.write_lines("best so far: " + best_ + "\n");
+    last_line_ = now;
+  }
+  if (at_best_) at_best_(best);
 }
 
 void SearchBar::at_group(double fraction, std::size_t designs) {

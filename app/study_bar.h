@@ -2,7 +2,9 @@
 
 // Progress bar for searches of the best design, and advice for shorter studies.
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "app/progress_bar.h"
@@ -26,11 +28,21 @@ class SearchBar : public studies::OptimiseObserver, public studies::SweepObserve
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
   void at_fraction(double fraction) override;
   void at(std::size_t evaluated) override;
+  /// Shows the best design so far, on a terminal next to the number of designs. Otherwise, writes a line from time to
+  /// time. Then calls the function of on_best().
+  void at_best(const studies::Variant& best) override;
+  /// Sets the text for a design, and a function that is called for each new best design.
+  void on_best(std::function<std::string(const studies::Variant&)> text,
+               std::function<void(const studies::Variant&)> action);
   void at_group(double fraction, std::size_t designs) override;
 
  private:
   ProgressBar bar_;
   std::string of_;
+  std::function<std::string(const studies::Variant&)> text_of_best_;
+  std::function<void(const studies::Variant&)> at_best_;
+  std::string best_;  ///< text about the best design so far; empty if there is none
+  std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
   std::uint64_t first_group_ = 0;  ///< number of designs in the first group; 0 until it is known
 };
 

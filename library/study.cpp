@@ -12,6 +12,7 @@
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/machining_limits.h"
 #include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/tolerance/io/tolerance_files.h"
@@ -116,18 +117,19 @@ StudyResult tolerance(const Study& study, const StudyRequest& request, const Run
 
 StudyResult optimize(const Study& study, const StudyRequest& request, const Running& running) {
   const Clock::time_point start = Clock::now();
-  const studies::Study of_study = to_study(study, request);
+  const studies::Study of_study = studies::with_machining_limits(to_study(study, request));
   const studies::OptimiseRequest asked = studies::read_optimise(of_study);
   compute::ResultStore store(request.store, studies::optimise_layout(of_study), if_exists_of(request));
-  studies::Optimum optimum;
+  const auto optimum = std::make_shared<studies::Optimum>();
   run_with_threads(running.threads,
-                   [&] { optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });
+                   [&] { *optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });
   StudyResult result;
-  result.complete = optimum.complete;
-  result.is_yes = optimum.best.has_value();
-  result.json = studies::optimum_json(of_study, asked, optimum, seconds_since(start));
-  result.csv = studies::front_csv(of_study, optimum);
-  result.table = studies::optimum_text(of_study, asked, optimum);
+  result.complete = optimum->complete;
+  result.is_yes = optimum->best.has_value();
+  result.json = studies::optimum_json(of_study, asked, *optimum, seconds_since(start));
+  result.csv = studies::front_csv(of_study, *optimum);
+  result.table = studies::optimum_text(of_study, asked, *optimum);
+  result.drawing = drawing_of([of_study, asked, optimum] { return report::optimum_plot(of_study, asked, *optimum); });
   return result;
 }
 

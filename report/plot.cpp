@@ -22,6 +22,7 @@ constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangl
                                  Marker::inverted_triangle};
 
 constexpr Colour kGrid{0.90, 0.90, 0.90};
+constexpr Colour kShade{0.93, 0.97, 0.93};
 constexpr Colour kMinorGrid{0.955, 0.955, 0.955};
 
 constexpr Font kLabelFont{13.5, false};
@@ -413,6 +414,14 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   }
 }
 
+void draw_shades(Canvas& canvas, const Layout& layout, const std::vector<Range>& ranges) {
+  for (const Range& range : ranges) {
+    const double left = layout.x.at(std::max(range.low, layout.x.values.low));
+    const double right = layout.x.at(std::min(range.high, layout.x.values.high));
+    if (right > left) canvas.fill_rectangle({left, layout.corner.y}, {right - left, kPlotAreaHeight}, kShade);
+  }
+}
+
 /// Replaces y by its decimal logarithm, and standard errors by those of the logarithm to first order.
 LinePlot with_logarithms(LinePlot plot) {
   if (plot.y_range) plot.y_range = Range{std::log10(plot.y_range->low), std::log10(plot.y_range->high)};
@@ -438,6 +447,7 @@ std::string render(const LinePlot& given, PlotFormat format, double scale) {
   const Layout layout = lay_out(plot, measuring_canvas());
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
+  draw_shades(canvas, layout, plot.shaded_x);
   draw_axes(canvas, layout);
   draw_texts(canvas, layout);
   draw_legend(canvas, layout);

@@ -57,7 +57,8 @@ struct LinePlot {
   std::optional<Range> x_range = {};  ///< range of the x axis; by default, the range of the points
   /// Range of the y axis. The default is rounded_range() of the points, or whole decades if the axis is logarithmic.
   std::optional<Range> y_range = {};
-  bool y_is_logarithmic = false;  ///< true: the y axis has decades; points with y <= 0 are omitted
+  std::vector<Range> shaded_x = {};  ///< ranges of x with a shaded background
+  bool y_is_logarithmic = false;     ///< true: the y axis has decades; points with y <= 0 are omitted
 };
 
 /// Returns the range of the values of the colour scale. Empty if the plot has no colour scale.

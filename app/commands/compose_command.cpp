@@ -153,12 +153,18 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
     SearchBar bar(
         {"composing", to_shorten_study(study, fmt::format("give a smaller compose.scan (now {})", request.scan))},
         "cells", common);
+    bar.on_best(
+        [&](const studies::Variant& best) {
+          return fmt::format("minimum of all goals {:.5g} with one kind of cell", *best.objective);
+        },
+        {});
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       if (const DistributeTasks share = distribute_among(session, slots(common), cancel))
         studies::distribute_sweep(studies::compose_scan(study, request), store, &bar, share);
       composition = studies::compose(study, request, store, &bar, cancel);
     });
   }
+  if (!composition.complete) studies::choose_best_so_far(study, request, store, composition);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string why_not = studies::why_not_reached(study, request, composition);
   Warnings warnings = remarks_of(session);

@@ -11,9 +11,14 @@
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "app/study_bar.h"
+#include "core/atomic_file.h"
+#include "core/message_text.h"
+#include "report/results/result_plots.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/machine_plan.h"
+#include "studies/quantity/machining_limits.h"
 #include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
@@ -31,8 +36,25 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
   return all;
 }
 
+/// Returns the request for the job of a study. Options that are not given have the values of [machining].
+JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& common, const studies::Study& study) {
+  JobRequest request = job_request(options.making, common);
+  if (options.job.empty()) return request;
+  const auto is_given = [&](const char* option) {
+    const auto found = options.making.fields.values.find(option);
+    return found != options.making.fields.values.end() && found->second.has_value();
+  };
+  const studies::MachiningProcess machining = studies::make_candidate(study, example_values(study)).machining();
+  if (!is_given("--machine") && !machining.machine.empty()) request.machine = machining.machine;
+  if (!is_given("--process") && !machining.process.empty()) request.process = machining.process;
+  if (!is_given("--strategy") && !machining.machine.empty())
+    request.strategy = fabrication::kStrategyWords[static_cast<std::size_t>(machining.strategy)];
+  return request;
+}
+
 /// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
-/// not given, it is the value of the key machining.tool_width_mm of the study.
+/// not given, it is the value of the key machining.tool_width_mm of the study. If [machining] names a machine, the job
+/// has its tool and its process.
 studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {
@@ -42,7 +64,9 @@ studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, co
                        "is required for --job, because the study does not contain machining.tool_width_mm");
     request.tool_width_mm = *width_mm;
   }
-  return studies::make_job(candidate.design(), request);
+  studies::GeneratedJob made = studies::make_job(candidate.design(), request);
+  if (!candidate.machining().machine.empty()) studies::take_machining(candidate.machining(), made.job);
+  return made;
 }
 
 std::vector<std::string> inputs_of(const OptimizeOptions& options, const JobRequest& making,
@@ -51,6 +75,10 @@ std::vector<std::string> inputs_of(const OptimizeOptions& options, const JobRequ
   if (!options.job.empty())
     for (const std::string& file : files_of_making(making)) files.push_back(file);
   return files;
+}
+
+studies::Study study_of(const OptimizeOptions& options, const CommonOptions& common) {
+  return studies::with_machining_limits(studies::read_study(options.study, common.overrides, common.seed));
 }
 
 /// Checks the options of the fabrication job. The check is made before the search, because a search can take a long
@@ -69,16 +97,28 @@ void check_making_of(const OptimizeOptions& options, JobRequest request, const s
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
-  const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+  const studies::Study study = study_of(options, common);
   const studies::OptimiseRequest request = studies::read_optimise(study);
-  const JobRequest making = job_request(options.making, common);
+  studies::optimise_scan(study, request);  // refuses too many designs before a store is created
+  const JobRequest making = request_of_job(options, common, study);
   check_making_of(options, making, study);
   const OrderlyInterrupt interrupt;
   studies::Optimum optimum;
   std::optional<studies::GeneratedJob> made;
   ResultFiles files(common, inputs_of(options, making, study), "optimum.json");
   files.add("front.csv", [&] { return studies::front_csv(study, optimum); });
+  files.add("designs.csv", [&] { return studies::designs_csv(study, optimum); });
+  const std::string best_comment =
+      fmt::format("# Best design of {}\n", printable(std::filesystem::path(study.source).filename().string()));
+  const auto best_text = [&](const studies::Variant& best) {
+    return studies::variant_design_text(study, best, best_comment);
+  };
+  files.add("best.toml", [&] { return optimum.best ? best_text(*optimum.best) : std::string(); });
   files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
+  files.add_drawing("optimum", [&] { return report::optimum_plot(study, request, optimum); });
+  files.add_drawing(
+      "constraints", [&] { return report::constraints_plot(study, request, optimum); },
+      [&] { return !request.constraints.empty(); });
   const std::filesystem::path file = files.reserve("optimum.sqlite");
   files.prepare();
   compute::ResultStore store(file, studies::optimise_layout(study), if_exists_of(options));
@@ -86,6 +126,11 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
     SearchBar bar(
         {"searching", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
         "designs", common);
+    bar.on_best([&](const studies::Variant& best) { return studies::short_text(study, request, best); },
+                [&](const studies::Variant& best) {
+                  // A killed run leaves the best design so far.
+                  if (!file.empty()) write_file_atomically(file.parent_path() / "best.toml", best_text(best));
+                });
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
       if (const DistributeTasks share = distribute_among(session, slots(common), cancel))
         studies::distribute_sweep(studies::optimise_scan(study, request), store, &bar, share);
@@ -118,7 +163,7 @@ ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
       common, slots(common), [&](compute::MpiSession* session) { return look(options, common, session); },
       [&] {
-        const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+        const studies::Study study = study_of(options, common);
         return studies::compute_task(studies::optimise_scan(study, studies::read_optimise(study)));
       });
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "app/commands.h"
 #include "app/points_run.h"
 #include "report/results/result_plots.h"
@@ -22,11 +24,16 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
     files.add("parts.csv", [&] { return studies::sweep_csv(*result); });
     files.add_drawing("tolerance", [&] { return report::tolerance_plot(result->sweep.study(), request, found); });
   };
+  std::optional<studies::Sweep> sweep;
   command.read = [&] {
     studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
     request = studies::read_tolerance(study);
     command.fewer_points = fmt::format("give a smaller tolerance.samples (now {})", request.samples);
-    return studies::tolerance_sweep(std::move(study), request);
+    sweep.emplace(studies::tolerance_sweep(std::move(study), request));
+    return *sweep;
+  };
+  command.so_far = [&](const std::vector<compute::StoredPoint>& points) {
+    return studies::so_far_text(studies::analyse(*sweep, request, points), request);
   };
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
     found = studies::analyse(result.sweep, request, result.points);

@@ -55,6 +55,18 @@ bool is_new(const fs::path& file) {
   return file.empty() || !fs::exists(file, ignored) || fs::file_size(file, ignored) == 0;
 }
 
+/// Returns false if an existing file is a store in which no point has succeeded, for example because of a wrong key in
+/// the study. Such a store contains nothing that is worth keeping.
+bool has_results(const fs::path& file) {
+  try {
+    SQLite::Database sqlite(file.string(), SQLite::OPEN_READONLY, kWaitMs);
+    if (sqlite.execAndGet("PRAGMA application_id").getInt() != kApplication) return true;
+    return sqlite.execAndGet("SELECT count(*) FROM points WHERE failed = 0").getInt() > 0;
+  } catch (const SQLite::Exception&) {
+    return true;  // the file is damaged or not a store
+  }
+}
+
 void remove_store(const fs::path& file) {
   std::error_code error;
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
@@ -283,12 +295,15 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     : database_(std::make_unique<Database>()) {
   database_->file = file;
   database_->layout = layout;
-  if (!is_new(file) && if_exists == IfExists::refuse)
-    throw InputError(
-        {file.string(), 0, ""},
-        fmt::format(
-            "the store exists already; use {} to continue it, {} to replace it, or another output folder to keep it",
-            reference({"resume"}), reference({"overwrite"})));
+  if (!is_new(file) && if_exists == IfExists::refuse) {
+    if (has_results(file))
+      throw InputError(
+          {file.string(), 0, ""},
+          fmt::format(
+              "the store exists already; use {} to continue it, {} to replace it, or another output folder to keep it",
+              reference({"resume"}), reference({"overwrite"})));
+    if_exists = IfExists::overwrite;
+  }
   try {
     // An existing store is checked before other files are created. If the store is refused, no new files remain next to
     // it.

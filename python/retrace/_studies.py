@@ -105,7 +105,8 @@ class ToleranceResult(Result):
 
 
 class Optimum(Result):
-    """Best design within constraints. `pareto` contains the rows of the Pareto front."""
+    """Best design within constraints. `pareto` contains the rows of the Pareto front, and `designs`
+    all evaluated designs, which are the data of the plot."""
 
     _rows = "pareto"
     _told = ("title", "objective_at_best")
@@ -115,9 +116,18 @@ class Optimum(Result):
     design: Design | None
 
     def __init__(self, core: Any, design: Design | None = None) -> None:
-        super().__init__(core)
+        super().__init__(core, drawings={"optimum": core.drawing})
         self.is_feasible = core.is_yes
         self.design = design
+
+    @property
+    def designs(self) -> Columns:
+        """All evaluated designs: parameters, quantities with standard errors, the objective, and
+        whether the design satisfies all constraints (`feasible`)."""
+        return Columns(self.document["designs"])
+
+    def _repr_svg_(self) -> str | None:
+        return self._shown_drawing("optimum")
 
     @property
     def objective_at_best(self) -> float:

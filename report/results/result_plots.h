@@ -36,6 +36,8 @@ struct ErrorMap;
 struct FabricationResult;
 struct ForcesResult;
 struct MetrologyResult;
+struct OptimiseRequest;
+struct Optimum;
 struct PhotometryResult;
 struct PlaningResult;
 struct RangingResult;
@@ -103,6 +105,18 @@ LinePlot observation_plot(const studies::PhotometryResult& result);
 /// below the value on the x axis. The nominal value and the limits are marked.
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
+
+/// Returns a plot of the objective of all evaluated designs with its errors, over the parameter that has the largest
+/// effect. The range in which designs satisfy all constraints is shaded, and the chosen design is marked. With several
+/// continuous parameters, the axes are the two most important parameters, and colours show the objective.
+LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseRequest& request,
+                      const studies::Optimum& optimum);
+
+/// Returns a plot of all constrained quantities, divided by their limits, over the same parameter as optimum_plot().
+/// The limit is the line at 1.
+/// \pre the request has a constraint
+LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRequest& request,
+                          const studies::Optimum& optimum);
 
 /// Returns a plot of the zones of a part and their contributions to each goal. If the search found no part, the plot
 /// has no zones.

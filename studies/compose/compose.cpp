@@ -29,6 +29,7 @@ OptimiseRequest single_request(const ComposeRequest& request) {
   single.objective.uses_minimum = true;
   single.constraints = request.cell_constraints;
   single.scan = request.scan;
+  single.has_levels = false;
   return single;
 }
 
@@ -76,6 +77,22 @@ class CellReader {
   std::vector<std::pair<std::size_t, double>> prices_;
 };
 
+/// Passes the progress of searches with dual prices to an observer. Their objectives are not those of the part, so
+/// their best designs are not reported.
+class PricingObserver final : public OptimiseObserver {
+ public:
+  explicit PricingObserver(OptimiseObserver* observer) : observer_(observer) {}
+  void at(std::size_t evaluated) override {
+    if (observer_ != nullptr) observer_->at(evaluated);
+  }
+  void at_group(double fraction, std::size_t designs) override {
+    if (observer_ != nullptr) observer_->at_group(fraction, designs);
+  }
+
+ private:
+  OptimiseObserver* observer_;
+};
+
 /// Runs one composition from the scan to the result.
 class Composer {
  public:
@@ -101,6 +118,14 @@ class Composer {
     count_zones(composition);
     draw_front(composition);
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
+  }
+
+  /// Chooses the best part of all cells in the store.
+  void choose_from_store(Composition& composition) {
+    family_.add_stored();
+    read_catalogue(composition);
+    choose(composition);
+    composition.proof = Proof::none;
   }
 
   /// Fills the catalogue with the cells that this run has evaluated. Cells that only earlier runs have evaluated are
@@ -182,6 +207,7 @@ class Composer {
     OptimiseRequest pricing;
     pricing.objective.weights.assign(weights.begin(), weights.end());
     pricing.constraints = request_.cell_constraints;
+    pricing.has_levels = false;
     return pricing;
   }
 
@@ -192,7 +218,8 @@ class Composer {
     if (!has_intervals(study_)) return false;
     const OptimiseRequest pricing = pricing_request(mixture);
     const std::vector<PointValues> starts = starts_of(composition, mixture);
-    Evaluator evaluator(study_, pricing, store_, observer_, cancel_);
+    PricingObserver observer(observer_);
+    Evaluator evaluator(study_, pricing, store_, &observer, cancel_);
     for (const PointValues& start : starts)
       refine(study_, pricing, evaluator, evaluator.evaluate(start), {request_.evaluations_per_start, kFirstStep});
     family_.add_evaluated(evaluator.evaluated());
@@ -264,6 +291,11 @@ class Composer {
       composition.infeasible_bounds = excluding_bounds(composition, relaxed);
       composition.infeasible_reason = why_none(composition, relaxed);
       return;
+    }
+    if (request_.area_steps) {
+      std::vector<MixedCell> cells;
+      for (const FamilyCell& cell : composition.catalogue) cells.push_back(cell.mixed);
+      mixture = rounded_mixture(cells, rules(request_.max_zones), mixture, *request_.area_steps);
     }
     composition.unlimited_merit = relaxed.merit;
     composition.best =
@@ -360,6 +392,7 @@ std::vector<Zone> robust_zones(const Composition& composition) {
 compute::StoreLayout compose_layout(const Study& study) {
   compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
+  layout.inputs.resize(study.parameters.size());  // cells are computed at one level of accuracy
   // Constraints and objectives of the mixture do not change the values of cells. They are therefore not part of the
   // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {
@@ -370,6 +403,11 @@ compute::StoreLayout compose_layout(const Study& study) {
 
 Sweep compose_scan(const Study& study, const ComposeRequest& request) {
   return optimise_scan(study, single_request(request));
+}
+
+void choose_best_so_far(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
+                        Composition& composition) {
+  Composer(study, request, store, nullptr, nullptr).choose_from_store(composition);
 }
 
 Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,

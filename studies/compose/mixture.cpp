@@ -1,6 +1,7 @@
 #include "studies/compose/mixture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -348,6 +349,64 @@ Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& ru
       (relaxed.zones.empty() || relaxed.zones.back().fraction >= rules.min_fraction - kFractionTolerance);
   if (!relaxed.is_feasible() || holds_all) return relaxed;
   return SetSearch(cells, rules, cancel, max_sets).run(relaxed);
+}
+
+namespace {
+
+/// Maximum number of zones for which all roundings are compared. With more zones, the largest remainders are rounded
+/// up.
+constexpr std::size_t kMaxZonesToCompare = 12;
+
+bool satisfies(const Mixture& mixture, const MixtureRules& rules) {
+  for (const ZoneFraction& zone : mixture.zones)
+    if (zone.fraction < rules.min_fraction - kFractionTolerance ||
+        zone.fraction > rules.max_fraction + kFractionTolerance)
+      return false;
+  for (std::size_t k = 0; k < rules.means.size(); ++k)
+    if (mixture.means[k] < rules.means[k].lower || mixture.means[k] > rules.means[k].upper) return false;
+  return true;
+}
+
+}  // namespace
+
+Mixture rounded_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Mixture& mixture,
+                        std::size_t steps) {
+  const std::size_t count = mixture.zones.size();
+  const auto whole = static_cast<double>(steps);
+  CellSet set;
+  std::vector<double> lower;
+  std::vector<std::pair<double, std::size_t>> remainders;
+  double missing = whole;
+  for (std::size_t k = 0; k < count; ++k) {
+    set.cells.push_back(mixture.zones[k].cell);
+    lower.push_back(std::floor(mixture.zones[k].fraction * whole + 1e-9));
+    remainders.emplace_back(lower.back() - mixture.zones[k].fraction * whole, k);
+    missing -= lower.back();
+  }
+  const auto up = static_cast<std::size_t>(std::llround(missing));
+  Mixture best = mixture;
+  bool is_found = false;
+  const auto compare = [&](const std::vector<bool>& is_up) {
+    std::vector<double> fractions;
+    for (std::size_t k = 0; k < count; ++k) fractions.push_back((lower[k] + (is_up[k] ? 1.0 : 0.0)) / whole);
+    Mixture rounded = mixture;
+    rounded.zones.clear();
+    add_up(cells, set, fractions, rounded);
+    if (!satisfies(rounded, rules) || (is_found && rounded.merit <= best.merit)) return;
+    best = rounded;
+    is_found = true;
+  };
+  std::ranges::sort(remainders);
+  std::vector<bool> is_up(count, false);
+  for (std::size_t k = 0; k < std::min(up, count); ++k) is_up[remainders[k].second] = true;
+  compare(is_up);
+  if (count > kMaxZonesToCompare) return best;
+  for (std::size_t mask = 0; mask < (std::size_t{1} << count); ++mask) {
+    if (static_cast<std::size_t>(std::popcount(mask)) != up) continue;
+    for (std::size_t k = 0; k < count; ++k) is_up[k] = (mask >> k) % 2 == 1;
+    compare(is_up);
+  }
+  return best;
 }
 
 }  // namespace retrace::studies

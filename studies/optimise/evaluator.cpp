@@ -1,7 +1,9 @@
 #include "studies/optimise/evaluator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -40,6 +42,12 @@ std::string Evaluator::key_of(const PointValues& design) {
   return key;
 }
 
+std::string Evaluator::key_of(const PointValues& design, const ErrorLevel& level) const {
+  const std::string key = key_of(design);
+  if (!request_.has_levels) return key;
+  return key + text_of(level.scale) + '\n' + text_of(static_cast<double>(level.replicate)) + '\n';
+}
+
 Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                      OptimiseObserver* observer, const Cancellation* cancel)
     : study_(study), request_(request), store_(store), observer_(observer), cancel_(cancel) {
@@ -51,6 +59,16 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
   }
 }
 
+/// Returns the study with which designs are computed at a level of accuracy.
+const Study& Evaluator::study_at(const ErrorLevel& level) {
+  if (!request_.has_levels) return study_;
+  const auto found = studies_.find(level);
+  if (found != studies_.end()) return found->second;
+  Study study = study_;
+  study.level = level;
+  return studies_.emplace(level, std::move(study)).first->second;
+}
+
 /// Returns the lowest point number that no stored point has. A search evaluates its designs in a fixed order.
 /// Therefore, each point of a resumed run has the same number as in an uninterrupted run.
 std::uint64_t Evaluator::free_number() {
@@ -58,13 +76,15 @@ std::uint64_t Evaluator::free_number() {
   return next_++;
 }
 
-std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs) {
+std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs, const ErrorLevel& level) {
   std::vector<PointValues> open;
   std::vector<std::string> keys;
-  std::set<std::string> asked;
+  std::set<std::string> added;
   for (const PointValues& design : designs) {
-    std::string key = key_of(design);
-    if (numbers_.contains(key) || !asked.insert(key).second) continue;
+    const auto known = by_level_.find(key_of(design));
+    if (known != by_level_.end() && known->second.contains(level)) continue;
+    std::string key = key_of(design, level);
+    if (!added.insert(key).second) continue;
     open.push_back(design);
     keys.push_back(std::move(key));
   }
@@ -78,40 +98,113 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   GroupProgress group(observer_, unknown);
   group.at(0.0);
   TaskProgress all(&group, std::max<std::size_t>(1, unknown));
+  const Study& study = study_at(level);
   std::vector<std::optional<compute::StoredPoint>> points(open.size());
   // `char` instead of bool: threads write to neighbouring elements at the same time, which vector<bool> does not allow.
   std::vector<char> ran_out(open.size());
+  std::mutex mutex;
+  std::size_t finished = evaluated_.size();
   for_each_in_parallel(open.size(), [&](std::size_t k) {
     const auto found = stored_.find(keys[k]);
     if (found != stored_.end()) {
       points[k] = found->second;
-      return;
+    } else {
+      bool has_run_out = false;
+      TaskProgress::Task task(all);
+      points[k] = compute_point(study, number[k], open[k], cancel_, &has_run_out, &task);
+      if (!points[k]) return;
+      task.finish();
+      ran_out[k] = has_run_out ? 1 : 0;
+      if (!has_run_out) store_.record(*points[k]);
     }
-    bool has_run_out = false;
-    TaskProgress::Task task(all);
-    points[k] = compute_point(study_, number[k], open[k], cancel_, &has_run_out, &task);
-    if (points[k]) task.finish();
-    ran_out[k] = has_run_out ? 1 : 0;
-    if (points[k] && !has_run_out) store_.record(*points[k]);
+    const std::lock_guard lock(mutex);
+    report_best(variant_of(*points[k], open[k]));
+    if (observer_ != nullptr) observer_->at(++finished);
   });
-  for (std::size_t k = 0; k < open.size(); ++k)
-    if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
+  bool is_interrupted = is_cancelled(cancel_);
   for (std::size_t k = 0; k < open.size(); ++k) {
-    if (!points[k]) throw Interrupted{};
-    numbers_[keys[k]] = evaluated_.size();
-    evaluated_.push_back(variant_of(*points[k], open[k]));
+    // An interruption loses no finished design: all of them are kept before the search ends.
+    is_interrupted = is_interrupted || !points[k];
+    if (!points[k]) continue;
+    if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
+    keep(open[k], level, *points[k]);
   }
-  if (observer_ != nullptr) observer_->at(evaluated_.size());
-  if (cancel_ != nullptr && cancel_->requested()) throw Interrupted{};
+  if (is_interrupted) throw Interrupted{};
   std::vector<Variant> found;
-  for (const PointValues& design : designs) found.push_back(evaluated_[numbers_.at(key_of(design))]);
+  for (const PointValues& design : designs) found.push_back(by_level_.at(key_of(design)).at(level));
   return found;
+}
+
+/// Adds a result to the results of a design.
+void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const compute::StoredPoint& point) {
+  const std::string key = key_of(design);
+  std::map<ErrorLevel, Variant>& results = by_level_[key];
+  if (!results.emplace(level, variant_of(point, design)).second) return;
+  ++results_;
+  const auto [at, is_new] = numbers_.try_emplace(key, evaluated_.size());
+  if (is_new) {
+    evaluated_.push_back(results.begin()->second);
+    return;
+  }
+  const std::uint64_t number = evaluated_[at->second].number;
+  evaluated_[at->second] = mean_of(results);
+  evaluated_[at->second].number = number;
+}
+
+/// Returns the mean of the results with the smallest error.
+Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
+  Variant mean = results.begin()->second;
+  std::size_t count = 0;
+  std::vector<double> squares(mean.outputs.size(), 0.0);
+  for (const auto& [level, variant] : results) {
+    if (level.scale != results.begin()->first.scale) break;
+    ++count;
+    if (variant.failed) return variant;
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      const compute::StoredOutput& output = variant.outputs[k];
+      squares[k] += output.std_error * output.std_error;
+      if (count == 1) continue;
+      if (mean.outputs[k].value && output.value)
+        *mean.outputs[k].value += (*output.value - *mean.outputs[k].value) / static_cast<double>(count);
+      else
+        mean.outputs[k].value.reset();
+    }
+  }
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    mean.outputs[k].std_error = std::sqrt(squares[k]) / static_cast<double>(count);
+  check_constraints(mean);
+  return mean;
+}
+
+/// Reports a design to the observer if it is better than all designs before.
+void Evaluator::report_best(const Variant& variant) {
+  if (!variant.feasible()) return;
+  const double value = *variant.objective - 2.0 * variant.objective_error;
+  if (best_value_ && value <= *best_value_) return;
+  best_value_ = value;
+  if (observer_ != nullptr) observer_->at_best(variant);
+}
+
+void Evaluator::add_stored() {
+  const std::size_t parameters = study_.parameters.size();
+  for (const auto& [key, point] : stored_) {
+    const std::optional<PointValues> design = values_of(study_, point.inputs);
+    if (!design) continue;
+    ErrorLevel level;
+    if (request_.has_levels)
+      level = {std::get<double>(point.inputs[parameters]),
+               static_cast<std::uint32_t>(std::get<double>(point.inputs[parameters + 1]))};
+    keep(*design, level, point);
+  }
 }
 
 void Evaluator::add_evaluated(const std::vector<Variant>& seen) {
   for (Variant variant : seen) {
-    if (!numbers_.try_emplace(key_of(variant.values), evaluated_.size()).second) continue;
+    const std::string key = key_of(variant.values);
+    if (!numbers_.try_emplace(key, evaluated_.size()).second) continue;
     check_constraints(variant);
+    by_level_[key].emplace(ErrorLevel{}, variant);
+    ++results_;
     evaluated_.push_back(std::move(variant));
   }
 }
@@ -133,21 +226,37 @@ std::optional<double> Evaluator::value(const Variant& variant, const std::string
   return std::nullopt;
 }
 
+double Evaluator::error_of(const Variant& variant, const std::string& quantity) const {
+  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
+    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].std_error;
+  return 0.0;
+}
+
 void Evaluator::check_constraints(Variant& variant) const {
   variant.objective.reset();
+  variant.objective_error = 0.0;
   variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
+  // All terms may use the same random numbers. Therefore their errors are correlated and are added linearly.
+  double sum_of_errors = 0.0;
   double least = std::numeric_limits<double>::infinity();
+  double error_of_least = 0.0;
   bool has_all = true;
   for (const auto& [quantity, weight] : request_.objective.weights) {
     const std::optional<double> term = value(variant, quantity);
     has_all = has_all && term;
     if (!term) continue;
+    const double error = std::abs(weight) * error_of(variant, quantity);
     sum += weight * *term;
+    sum_of_errors += error;
+    if (weight * *term < least) error_of_least = error;
     least = std::min(least, weight * *term);
   }
-  if (has_all) variant.objective = request_.objective.uses_minimum ? least : sum;
+  if (has_all) {
+    variant.objective = request_.objective.uses_minimum ? least : sum;
+    variant.objective_error = request_.objective.uses_minimum ? error_of_least : sum_of_errors;
+  }
   for (std::size_t k = 0; k < request_.constraints.size(); ++k)
     if (request_.constraints[k].violation(value(variant, request_.constraints[k].quantity)) > 0.0)
       variant.broken.push_back(k);

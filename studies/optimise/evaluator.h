@@ -22,10 +22,19 @@ class Evaluator {
             const Cancellation* cancel);
 
   /// Evaluates designs and returns the results in the given order. Several designs are computed in parallel.
+  /// \param level accuracy of the results
   /// \throw Interrupted if the search was cancelled
   /// \throw OutputError if a result cannot be stored
-  std::vector<Variant> evaluate(const std::vector<PointValues>& designs);
-  Variant evaluate(const PointValues& design) { return evaluate(std::vector<PointValues>{design}).front(); }
+  std::vector<Variant> evaluate(const std::vector<PointValues>& designs, const ErrorLevel& level = {});
+  Variant evaluate(const PointValues& design, const ErrorLevel& level = {}) {
+    return evaluate(std::vector<PointValues>{design}, level).front();
+  }
+  /// Adds the designs of the store that this search has not evaluated.
+  void add_stored();
+  /// Returns the most accurate result of an evaluated design. It is the mean of the results with the smallest error.
+  const Variant& most_accurate(const PointValues& design) const { return evaluated_[numbers_.at(key_of(design))]; }
+  /// Returns the number of results. A design that was evaluated at several levels has several results.
+  std::size_t results() const { return results_; }
   /// Adds designs that another search of this study has evaluated. They are not evaluated again.
   void add_evaluated(const std::vector<Variant>& seen);
 
@@ -38,12 +47,19 @@ class Evaluator {
   const std::string& budget_failure_reason() const { return budget_failure_reason_; }
   /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
+  /// Returns the standard error of a quantity.
+  double error_of(const Variant& variant, const std::string& quantity) const;
   /// Returns the derivative (slope) of the objective with respect to a parameter. Returns nothing if the derivative of
   /// a quantity of the objective cannot be computed.
   std::optional<double> slope(const PointValues& design, std::size_t parameter) const;
 
  private:
   static std::string key_of(const PointValues& design);
+  std::string key_of(const PointValues& design, const ErrorLevel& level) const;
+  const Study& study_at(const ErrorLevel& level);
+  void keep(const PointValues& design, const ErrorLevel& level, const compute::StoredPoint& point);
+  void report_best(const Variant& variant);
+  Variant mean_of(const std::map<ErrorLevel, Variant>& results) const;
   std::uint64_t free_number();
   void check_constraints(Variant& variant) const;
   Variant variant_of(const compute::StoredPoint& point, const PointValues& design) const;
@@ -55,8 +71,13 @@ class Evaluator {
   const Cancellation* cancel_;
   /// Index in `evaluated_` of each evaluated design; the key is a text of its parameter values.
   std::map<std::string, std::size_t> numbers_;
-  std::map<std::string, compute::StoredPoint>
-      stored_;  ///< points of an earlier run; the key is a text of the parameter values
+  /// Points of an earlier run. The key is a text of the parameter values and the level.
+  std::map<std::string, compute::StoredPoint> stored_;
+  std::map<ErrorLevel, Study> studies_;  ///< the study at each level
+  /// Results of each design at all levels; the key is a text of its parameter values.
+  std::map<std::string, std::map<ErrorLevel, Variant>> by_level_;
+  std::optional<double> best_value_;  ///< value by which the best design was compared, see OptimiseObserver::at_best()
+  std::size_t results_ = 0;
   std::vector<Variant> evaluated_;
   std::set<std::uint64_t> used_numbers_;  ///< numbers of the points in the store
   std::size_t budget_failures_ = 0;

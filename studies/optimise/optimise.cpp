@@ -7,9 +7,10 @@
 #include <memory>
 #include <utility>
 
-#include "compute/sampling/unit_samples.h"
 #include "studies/optimise/bands.h"
+#include "studies/optimise/design_function.h"
 #include "studies/optimise/evaluator.h"
+#include "studies/optimise/noisy_search.h"
 #include "studies/optimise/refine.h"
 
 namespace retrace::studies {
@@ -24,14 +25,23 @@ constexpr double kNearlyAsGood = 0.01;
 /// Minimum gain for which a cheaper design is proposed. It is measured on the axis of the Pareto front, as a fraction
 /// of the best design's value on this axis.
 constexpr double kWorthIt = 1e-3;
-constexpr std::uint64_t kMaxCombinations = 10'000;
-constexpr const char* kStoreKind = "retrace.optimum/1";
+/// Error of the first scan if quantities have random errors, as a multiple of the target error of the study.
+constexpr double kScanScale = 16.0;
+/// Distance of designs that divide the part from the best design of the scan, as a multiple of the scan's spacing.
+constexpr double kPeakBox = 3.0;
+/// Maximum number of these designs.
+constexpr std::size_t kMaxPeaks = 6;
+/// Range in which values are rounded, as a multiple of the scan's spacing.
+constexpr double kRoundingBox = 1.5;
+constexpr const char* kStoreKind = "retrace.optimum/2";
+constexpr const char* kLevelInputs[] = {"error_scale", "replicate"};
 
 }  // namespace
 
 compute::StoreLayout optimise_layout(const Study& study) {
   compute::StoreLayout layout{kStoreKind, study.source, study.parts, {}, {}};
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
+  for (const char* const input : kLevelInputs) layout.inputs.emplace_back(input);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
   layout.fault_of = [study](const compute::StoredPoint& point) -> std::string {
     return values_of(study, point.inputs) ? "" : "its values are not allowed by the parameters of the study";
@@ -45,81 +55,17 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// Generates the designs with which the search begins (first scan).
-class Scan {
- public:
-  Scan(const Study& study, const OptimiseRequest& request) : study_(study), request_(request) {
-    for (std::size_t k = 0; k < study.parameters.size(); ++k)
-      if (study.parameters[k].interval) continuous_.push_back(k);
-  }
-
-  /// Returns the indices of the parameters with an interval.
-  const std::vector<std::size_t>& continuous() const { return continuous_; }
-
-  /// Returns all combinations of discrete values. Continuous parameters are set to the middle of their intervals.
-  std::vector<PointValues> combinations() const {
-    std::vector<PointValues> all(1);
-    for (const Parameter& parameter : study_.parameters) {
-      std::vector<PointValues> longer;
-      for (const PointValues& begun : all) {
-        if (parameter.interval) {
-          longer.push_back(begun);
-          longer.back().push_back(Parameter::value_of(parameter.interval->at(0.5)));
-          continue;
-        }
-        for (const ParameterValue& value : parameter.values) {
-          longer.push_back(begun);
-          longer.back().push_back(value);
-        }
-      }
-      if (longer.size() > kMaxCombinations)
-        throw InputError(parameter.location,
-                         fmt::format("the study has more than {} combinations of discrete values", kMaxCombinations));
-      all = std::move(longer);
-    }
-    return all;
-  }
-
-  PointValues with(PointValues design, const std::vector<double>& shares) const {
-    for (std::size_t k = 0; k < continuous_.size(); ++k)
-      design[continuous_[k]] = Parameter::value_of(study_.parameters[continuous_[k]].interval->at(shares[k]));
-    return design;
-  }
-
-  /// Returns the designs of the scan for one combination of discrete values. For one continuous parameter, they are
-  /// equally spaced. For several, they are the corners of the intervals and Sobol points.
-  std::vector<PointValues> of(const PointValues& combination) const {
-    const std::size_t dimensions = continuous_.size();
-    if (dimensions == 0) return {combination};
-    std::vector<PointValues> designs;
-    if (dimensions == 1) {
-      for (std::size_t k = 0; k < request_.scan; ++k)
-        designs.push_back(with(combination, {static_cast<double>(k) / static_cast<double>(request_.scan - 1)}));
-      return designs;
-    }
-    constexpr std::size_t most_corners = 6;
-    for (std::size_t corner = 0; dimensions <= most_corners && corner < (std::size_t{1} << dimensions); ++corner) {
-      std::vector<double> shares;
-      for (std::size_t k = 0; k < dimensions; ++k) shares.push_back((corner >> k) % 2 == 0 ? 0.0 : 1.0);
-      designs.push_back(with(combination, shares));
-    }
-    const compute::UnitSamples samples(compute::UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
-    for (std::size_t k = 0; k < request_.scan; ++k) designs.push_back(with(combination, samples.at(k)));
-    return designs;
-  }
-
- private:
-  const Study& study_;
-  const OptimiseRequest& request_;
-  std::vector<std::size_t> continuous_;
-};
+/// Returns the error of the first scan as a multiple of the target error of the study.
+double scan_scale(const Study& study, const OptimiseRequest& request) {
+  return request.has_levels && may_be_noisy(study) ? kScanScale : 1.0;
+}
 
 /// All designs of the first scan, as points of a sweep.
 class ScannedPoints : public PointPlan {
  public:
   ScannedPoints(const Study& study, const OptimiseRequest& request) {
     const Scan scan(study, request);
-    for (const PointValues& combination : scan.combinations())
+    for (std::size_t combination = 0; combination < scan.combinations().size(); ++combination)
       for (PointValues& design : scan.of(combination)) points_.push_back(std::move(design));
   }
   std::uint64_t size() const override { return points_.size(); }
@@ -130,33 +76,24 @@ class ScannedPoints : public PointPlan {
 };
 
 /// Search for the best design, from the first scan to the result.
-class Search {
+class DesignSearch {
  public:
-  Search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
+  DesignSearch(const Study& study, const OptimiseRequest& request, Evaluator& evaluator)
       : study_(study),
         request_(request),
         evaluator_(evaluator),
         scan_(study, request),
+        function_(study, request, scan_, evaluator),
         continuous_(scan_.continuous()) {}
 
   /// Runs the search. Returns the best design, or nothing if none is feasible.
   std::optional<Variant> run(Optimum& optimum) {
-    std::vector<Variant> starts;
-    for (const PointValues& combination : scan_.combinations()) {
-      const std::vector<Variant> scanned = evaluator_.evaluate(scan_.of(combination));
-      look_at_edges(scanned);
-      std::optional<Variant> best;
-      for (const Variant& variant : scanned)
-        if (variant.feasible() && (!best || is_better(variant, *best))) best = variant;
-      if (best) starts.push_back(*best);
-    }
-    std::stable_sort(starts.begin(), starts.end(), is_better);
-    if (starts.size() > kRefined) starts.resize(kRefined);
-    bool by_slopes = !starts.empty() && !continuous_.empty();
-    for (const Variant& start : starts) by_slopes = refine(study_, request_, evaluator_, start) && by_slopes;
-    optimum.method = by_slopes ? "exact slopes" : "no slopes";
-    const std::optional<Variant> best = best_seen();
-    return best ? std::optional(rounded(*best)) : std::nullopt;
+    const double scale = scan_scale(study_, request_);
+    bool is_noisy = false;
+    for (std::size_t combination = 0; combination < scan_.combinations().size(); ++combination)
+      for (const Variant& variant : evaluator_.evaluate(scan_.of(combination), {scale, 0}))
+        is_noisy = is_noisy || has_noise(variant);
+    return is_noisy && request_.has_levels ? run_with_noise(scale, optimum) : run_without_noise(optimum);
   }
 
   /// Returns the neighbours of the best design. Each neighbour differs from the best design by one step of one
@@ -169,11 +106,14 @@ class Search {
         if (!value) continue;
         PointValues design = best.values;
         design[k] = *value;
-        found.push_back({evaluator_.evaluate(design),
+        found.push_back({evaluator_.evaluate(design, {neighbour_scale_, 0}),
                          fmt::format("{} {}", step < 0 ? "lower" : "higher", study_.parameters[k].name), ""});
       }
     return found;
   }
+
+  /// Returns true if the search compares designs whose quantities have random errors.
+  bool is_noisy() const { return is_noisy_; }
 
   std::optional<Variant> best_seen() const {
     std::optional<Variant> best;
@@ -183,6 +123,82 @@ class Search {
   }
 
  private:
+  /// Returns true if the objective or a constrained quantity of a design has a random error.
+  bool has_noise(const Variant& variant) const {
+    return variant.objective_error > 0.0 ||
+           std::ranges::any_of(request_.constraints, [&](const Constraint& constraint) {
+             return evaluator_.error_of(variant, constraint.quantity) > 0.0;
+           });
+  }
+
+  std::optional<Variant> run_with_noise(double scale, Optimum& optimum) {
+    is_noisy_ = true;
+    NoisySearchSettings settings;
+    settings.spacing = scan_.spacing();
+    if (scale == 1.0) settings.scan_scale = settings.refinement_scale = settings.last_scale = 1.0;
+    neighbour_scale_ = settings.refinement_scale;
+    std::vector<std::vector<SearchPoint>> points;
+    for (std::size_t combination = 0; combination < scan_.combinations().size(); ++combination) {
+      points.emplace_back();
+      for (const PointValues& design : scan_.of(combination))
+        points.back().push_back({combination, scan_.fractions_of(design)});
+    }
+    const NoisyOptimum found = search_with_noise(function_, points, settings);
+    optimum.method = "paired comparison";
+    optimum.resolution = found.resolution;
+    if (!found.best) return std::nullopt;
+    return evaluator_.most_accurate(function_.design_at(*found.best));
+  }
+
+  std::optional<Variant> run_without_noise(Optimum& optimum) {
+    std::vector<std::pair<std::size_t, Variant>> starts;
+    for (std::size_t combination = 0; combination < scan_.combinations().size(); ++combination) {
+      const std::vector<Variant> scanned = evaluator_.evaluate(scan_.of(combination));
+      look_at_edges(scanned);
+      std::optional<Variant> best;
+      for (const Variant& variant : scanned)
+        if (variant.feasible() && (!best || is_better(variant, *best))) best = variant;
+      if (best) starts.emplace_back(combination, best_peak(combination, *best));
+    }
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const auto& a, const auto& b) { return is_better(a.second, b.second); });
+    if (starts.size() > kRefined) starts.resize(kRefined);
+    bool by_slopes = !starts.empty() && !continuous_.empty();
+    for (const auto& start : starts) by_slopes = refine(study_, request_, evaluator_, start.second) && by_slopes;
+    optimum.method = by_slopes ? "exact slopes" : "no slopes";
+    const std::optional<Variant> best = best_seen();
+    return best ? std::optional(rounded(*best)) : std::nullopt;
+  }
+
+  /// Returns the index of the combination of discrete values of a design.
+  std::size_t combination_of(const PointValues& design) const {
+    const auto is_same = [&](const PointValues& combination) {
+      for (std::size_t k = 0; k < design.size(); ++k)
+        if (!study_.parameters[k].interval && design[k].toml != combination[k].toml) return false;
+      return true;
+    };
+    return static_cast<std::size_t>(std::ranges::find_if(scan_.combinations(), is_same) - scan_.combinations().begin());
+  }
+
+  /// Evaluates the designs near a design whose elements divide the part. Returns the best design.
+  Variant best_peak(std::size_t combination, const Variant& start) {
+    const SearchPoint at{combination, scan_.fractions_of(start.values)};
+    std::vector<SearchPoint> peaks = function_.peaks_near(at, kPeakBox * scan_.spacing());
+    const auto distance = [&](const SearchPoint& peak) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < peak.fractions.size(); ++k) sum += std::abs(peak.fractions[k] - at.fractions[k]);
+      return sum;
+    };
+    std::ranges::stable_sort(peaks, {}, distance);
+    if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
+    std::vector<PointValues> designs;
+    for (const SearchPoint& peak : peaks) designs.push_back(function_.design_at(peak));
+    Variant best = start;
+    for (const Variant& variant : evaluator_.evaluate(designs))
+      if (variant.feasible() && is_better(variant, best)) best = variant;
+    return best;
+  }
+
   /// Searches along a line of designs, by bisection, for the points at which a constraint changes between satisfied and
   /// violated. The best design may be the last feasible design before one of these points.
   void look_at_edges(const std::vector<Variant>& line) {
@@ -205,18 +221,14 @@ class Search {
     }
   }
 
-  /// Returns the design with its parameters rounded to as few digits as possible without a significant loss of the
+  /// Returns the design with its parameters rounded to the roundest values that cause no significant loss of the
   /// objective.
   Variant rounded(const Variant& best) {
-    constexpr int most_digits = 9;
-    for (int digits = 1; digits <= most_digits && !continuous_.empty(); ++digits) {
-      PointValues design = best.values;
-      for (const std::size_t k : continuous_) {
-        const Interval& interval = *study_.parameters[k].interval;
-        const double value = std::stod(fmt::format("{:.{}e}", std::get<double>(design[k].shown), digits - 1));
-        design[k] = Parameter::value_of(std::clamp(value, interval.from, interval.to));
-      }
-      const Variant variant = evaluator_.evaluate(design);
+    if (continuous_.empty() || !request_.is_rounded) return best;
+    const SearchPoint at{combination_of(best.values), scan_.fractions_of(best.values)};
+    for (const SearchPoint& round : function_.rounder_points(at, kRoundingBox * scan_.spacing())) {
+      if (!function_.is_allowed(round)) continue;
+      const Variant variant = evaluator_.evaluate(function_.design_at(round));
       if (variant.feasible() && *variant.objective >= *best.objective - kForRoundness * std::abs(*best.objective))
         return variant;
     }
@@ -242,7 +254,10 @@ class Search {
   const OptimiseRequest& request_;
   Evaluator& evaluator_;
   Scan scan_;
+  DesignFunction function_;
   const std::vector<std::size_t>& continuous_;
+  bool is_noisy_ = false;
+  double neighbour_scale_ = 1.0;  ///< ErrorLevel::scale with which neighbours of the best design are computed
 };
 
 /// Returns a text that explains why a design was not chosen.
@@ -261,6 +276,9 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
   if (!why.empty()) return why;
   if (!variant.objective) return "a quantity of the objective has no value";
   const double less = *best.objective - *variant.objective;
+  const double error = std::hypot(best.objective_error, variant.objective_error);
+  if (error > 0.0 && std::abs(less) < 2.0 * error)
+    return fmt::format("the difference of the objective, {:.2g}, is below its error", less);
   if (less <= 0.0) return "equally good, but with more digits or found later";
   return fmt::format("objective lower by {:.3g}", less);
 }
@@ -298,7 +316,9 @@ std::optional<std::vector<double>> merits(const Variant& variant, const Optimise
   for (const FrontAxis& axis : request.front) {
     const std::optional<double> value = evaluator.value(variant, axis.quantity);
     if (!value) return std::nullopt;
-    merits.push_back(axis.is_maximized ? *value : -*value);
+    // A value with a large error does not dominate others because of its error.
+    const double error = evaluator.error_of(variant, axis.quantity);
+    merits.push_back((axis.is_maximized ? *value : -*value) - 2.0 * error);
   }
   return merits;
 }
@@ -392,9 +412,20 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
   return text.empty() ? "the objective has no value for any design" : text + ": no design satisfies all constraints";
 }
 
+/// Adds the results that need no further computation: the Pareto front, and the designs that were not chosen.
+void add_results(const OptimiseRequest& request, const Evaluator& evaluator, std::vector<Rejected> neighbours,
+                 Optimum& optimum) {
+  optimum.rejected = excluded_designs(request, evaluator, *optimum.best);
+  optimum.rejected.insert(optimum.rejected.end(), neighbours.begin(), neighbours.end());
+  for (Rejected& rejected : optimum.rejected)
+    rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
+  optimum.front = entrance_of(request, evaluator);
+  optimum.cheaper = cheaper_than(optimum, request, evaluator);
+}
+
 void search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel,
             Optimum& optimum) {
-  Search searching(study, request, evaluator);
+  DesignSearch searching(study, request, evaluator);
   optimum.best = searching.run(optimum);
   if (!optimum.best) {
     optimum.exclusions = exclusions_of(request, evaluator);
@@ -404,24 +435,33 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);
   // If a neighbour is better than the result of the search, it replaces the result.
   if (const auto best = searching.best_seen();
+      !searching.is_noisy() &&
       *best->objective > *optimum.best->objective + kForRoundness * std::abs(*optimum.best->objective)) {
     optimum.best = best;
     neighbours = searching.neighbours(*best);
   }
-  optimum.rejected = excluded_designs(request, evaluator, *optimum.best);
-  optimum.rejected.insert(optimum.rejected.end(), neighbours.begin(), neighbours.end());
-  for (Rejected& rejected : optimum.rejected)
-    rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
-  optimum.front = entrance_of(request, evaluator);
-  optimum.cheaper = cheaper_than(optimum, request, evaluator);
+  add_results(request, evaluator, std::move(neighbours), optimum);
   for (const std::string& key : request.band_keys)
     optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));
+}
+
+/// Fills the result of an interrupted search with the best of all designs that are finished.
+void finish_early(const OptimiseRequest& request, Evaluator& evaluator, Optimum& optimum) {
+  optimum = {};
+  optimum.complete = false;
+  evaluator.add_stored();
+  const auto value = [](const Variant& variant) { return *variant.objective - 2.0 * variant.objective_error; };
+  for (const Variant& variant : evaluator.evaluated())
+    if (variant.feasible() && (!optimum.best || value(variant) > value(*optimum.best))) optimum.best = variant;
+  if (optimum.best) add_results(request, evaluator, {}, optimum);
 }
 
 }  // namespace
 
 Sweep optimise_scan(const Study& study, const OptimiseRequest& request) {
-  return {study, kStoreKind, std::make_shared<ScannedPoints>(study, request)};
+  Study at_level = study;
+  if (request.has_levels) at_level.level = {scan_scale(study, request), 0};
+  return {std::move(at_level), kStoreKind, std::make_shared<ScannedPoints>(study, request)};
 }
 
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
@@ -435,9 +475,9 @@ Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& 
   try {
     search(study, request, evaluator, cancel, optimum);
   } catch (const Interrupted&) {
-    optimum = {};
-    optimum.complete = false;
+    finish_early(request, evaluator, optimum);
   }
+  optimum.designs = evaluator.evaluated();
   optimum.evaluations = evaluator.evaluated().size();
   optimum.budget_failures = evaluator.budget_failures();
   optimum.budget_failure_reason = evaluator.budget_failure_reason();

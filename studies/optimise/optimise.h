@@ -38,6 +38,9 @@ struct OptimiseRequest {
   std::size_t scan = 65;               ///< number of designs in the first scan, for each combination of discrete values
   std::vector<std::string> band_keys;  ///< keys whose tolerance bands are requested
   double band_loss = 0.01;             ///< relative loss of the objective at which a tolerance band ends
+  bool is_rounded = true;              ///< true: the result is rounded to values that drawings use
+  /// True: designs are computed at several levels of accuracy, and the store contains the level of each point.
+  bool has_levels = true;
 };
 
 /// Evaluated design with its results.
@@ -48,6 +51,7 @@ struct Variant {
   std::string reason;  ///< error message if the computation failed
   std::vector<compute::StoredOutput> outputs;
   std::optional<double> objective;  ///< none if the computation failed or a quantity has no value
+  double objective_error = 0.0;     ///< standard error of the objective
   std::vector<std::size_t> broken;  ///< indices of the violated constraints
   bool feasible() const { return objective.has_value() && broken.empty(); }
 };
@@ -82,12 +86,17 @@ struct Optimum {
   /// Effect of each constraint, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< Pareto front: feasible designs that no other design dominates
+  /// All evaluated designs, with their most accurate results, in the order of their first evaluation.
+  std::vector<Variant> designs;
+  /// Upper limit, with a confidence of 95 %, of the amount by which the best design near the evaluated designs exceeds
+  /// the objective of `best`. 0 if the objective has no random error.
+  double resolution = 0.0;
   std::vector<Rejected> rejected;
   /// Cheaper alternative to the best design. Among the designs of the Pareto front that lose at most 1 % of the
   /// objective, it is the best on the first axis that is not part of the objective.
   std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
-  std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"
+  std::string method;  ///< method of the refinement: "exact slopes", "no slopes" or "paired comparison"
   std::size_t evaluations = 0;
   std::size_t budget_failures =
       0;  ///< number of designs that failed because the budget of memory or beams was exhausted
@@ -100,6 +109,9 @@ class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
+  /// Reports a feasible design that is better than all designs that were reported before. The value by which designs
+  /// are compared is the objective minus twice its standard error. Only one thread at a time calls this function.
+  virtual void at_best(const Variant& best) { static_cast<void>(best); }
   /// Reports the progress of a group of designs that are evaluated together.
   /// \param fraction finished fraction of the group; 0 when the group begins
   /// \param designs number of designs in the group
@@ -118,9 +130,10 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
 /// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
 /// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
-/// within bounds and constraints. Finally, values are rounded if this does not make the design worse. Designs that are
-/// already in the store are not computed again, and the result is the same.
-/// \throw OutputError if a result cannot be stored
+/// within bounds and constraints. Finally, values are rounded if this does not make the design worse. If quantities
+/// have random errors, search_with_noise() is used. Designs that are already in the store are not computed again, and
+/// the result is the same. The result of an interrupted search contains all designs of the store. \throw OutputError if
+/// a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                  OptimiseObserver* observer, const Cancellation* cancel);
 

@@ -27,6 +27,11 @@ struct MachiningProcess {
   /// Cutting strategy: two_step or unidirectional. With unidirectional, there are no finishing cuts.
   fabrication::Strategy strategy = fabrication::Strategy::two_step;
   double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
+  /// Maximum path length of a cutting edge in the material; no limit if empty.
+  std::optional<double> edge_life_mm;
+  std::string machine;     ///< name of a shipped machine, or a machine file; if empty, times are those of the path only
+  std::string process;     ///< name of a shipped process, or a process file; if empty, the defaults above
+  bool has_limits = true;  ///< true: an optimization keeps the limits of the tool and the machine
   /// True: the design gets the facet texture and the root radius that result from cutting.
   bool surface_as_cut = false;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <variant>
 
 #include "core/angle.h"
@@ -13,6 +14,7 @@
 #include "design/optical_model.h"
 #include "geometry/elements/element_cells.h"
 #include "studies/inspect/inspect.h"
+#include "studies/quantity/machine_plan.h"
 #include "studies/rre/rre_request.h"
 
 namespace retrace::studies {
@@ -162,17 +164,61 @@ std::optional<double> total_reflection_limit_deg(const design::Design& design) {
   return design::tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
-/// Returns the machining time in hours. Only whole elements are machined.
-double machining_time_h(const Candidate& candidate) {
-  constexpr double seconds_per_hour = 3600.0;
-  return static_cast<double>(candidate.part().elements_full) *
-         seconds_per_element(prism_of(candidate), candidate.machining()) / seconds_per_hour;
+/// Returns the plan of a candidate on its machine. Returns null if the process names no machine.
+std::shared_ptr<const MachinePlan> machine_plan_of(const Candidate& candidate) {
+  if (candidate.machining().machine.empty()) return nullptr;
+  prism_of(candidate);
+  return candidate.shared<MachinePlan>("machine plan", [&] {
+    return std::make_shared<MachinePlan>(plan_on_machine(candidate.design(), candidate.machining()));
+  });
 }
 
-/// Returns the width of an element minus the width of the tool. 0 if the process defines no tool width.
+/// Returns the machining time of one element in seconds. With a machine, it is the mean of the plan.
+std::optional<double> element_time_s(const Candidate& candidate) {
+  const auto plan = machine_plan_of(candidate);
+  if (!plan) return seconds_per_element(prism_of(candidate), candidate.machining());
+  if (!plan->time_s) return std::nullopt;
+  return *plan->time_s / static_cast<double>(plan->elements);
+}
+
+/// Returns the machining time in hours. Only whole elements are machined.
+std::optional<double> machining_time_h(const Candidate& candidate) {
+  constexpr double seconds_per_hour = 3600.0;
+  const std::optional<double> time_s = element_time_s(candidate);
+  if (!time_s) return std::nullopt;
+  const auto plan = machine_plan_of(candidate);
+  const double elements =
+      plan ? static_cast<double>(plan->elements) : static_cast<double>(candidate.part().elements_full);
+  return elements * *time_s / seconds_per_hour;
+}
+
+std::optional<double> area_rate_mm2_per_h(const Candidate& candidate) {
+  const std::optional<double> time_s = element_time_s(candidate);
+  if (!time_s) return std::nullopt;
+  return 3600.0 * full_element_area_mm2(candidate.design().part()) / *time_s;
+}
+
+/// Returns the width of an element minus the width of the tool. 0 if the process defines no tool width, or if the
+/// difference is below one nanometre.
 double tool_fit_mm(const Candidate& candidate) {
+  constexpr double fit_mm = 1e-6;
   const double width_mm = prism_of(candidate).width_mm;
-  return width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
+  const double margin_mm = width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
+  return std::abs(margin_mm) < fit_mm ? 0.0 : margin_mm;
+}
+
+/// Returns the remaining travel of the axes. No value without a machine, or if the machine cannot reach a facet.
+std::optional<double> machine_travel_mm(const Candidate& candidate) {
+  const auto plan = machine_plan_of(candidate);
+  return plan ? plan->travel_mm : std::nullopt;
+}
+
+/// Returns the tool life minus the path of the edge in one element. No value without a machine or a tool life.
+std::optional<double> edge_life_margin_mm(const Candidate& candidate) {
+  const auto plan = machine_plan_of(candidate);
+  const std::optional<double>& life_mm = candidate.machining().edge_life_mm;
+  if (!plan || !plan->cut_per_element_mm || !life_mm) return std::nullopt;
+  return *life_mm - *plan->cut_per_element_mm;
 }
 
 /// Returns the design of a candidate, which must be an array of equal elements, flat or on a substrate.
@@ -222,13 +268,12 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
     case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(elements_behind_plane(candidate, name));
     case PlainQuantity::tool_fit_mm: return tool_fit_mm(candidate);
     case PlainQuantity::machining_time_h: return machining_time_h(candidate);
-    case PlainQuantity::machining_time_per_element_s:
-      return seconds_per_element(prism_of(candidate), candidate.machining());
-    case PlainQuantity::area_rate_mm2_per_h:
-      return 3600.0 * full_element_area_mm2(elements_of(candidate, name).part()) /
-             seconds_per_element(prism_of(candidate), candidate.machining());
+    case PlainQuantity::machining_time_per_element_s: return element_time_s(candidate);
+    case PlainQuantity::area_rate_mm2_per_h: elements_of(candidate, name); return area_rate_mm2_per_h(candidate);
     case PlainQuantity::process_sa_nm: return process_sa_nm(candidate.machining());
     case PlainQuantity::root_radius_um: return um_per_mm * elements_of(candidate, name).part().edges.root_radius_mm;
+    case PlainQuantity::machine_travel_mm: return machine_travel_mm(candidate);
+    case PlainQuantity::edge_life_margin_mm: return edge_life_margin_mm(candidate);
   }
   return std::nullopt;
 }

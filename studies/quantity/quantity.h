@@ -102,7 +102,9 @@ enum class PlainQuantity {
   machining_time_per_element_s,
   area_rate_mm2_per_h,
   process_sa_nm,
-  root_radius_um
+  root_radius_um,
+  machine_travel_mm,
+  edge_life_margin_mm
 };
 std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity which);
 

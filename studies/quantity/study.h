@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
+#include "studies/quantity/error_level.h"
 #include "studies/quantity/quantity.h"
 
 namespace retrace::studies {
@@ -71,6 +72,9 @@ struct Study {
   std::vector<std::string> files;
   std::vector<std::string> overrides;  ///< values of the option --set
   std::uint32_t seed = 1;
+  /// Accuracy of all quantities, relative to the settings of [analysis]. If it is set, stored points contain it as two
+  /// further inputs. None: the settings of [analysis] apply.
+  std::optional<ErrorLevel> level;
   std::vector<Parameter> parameters;
   Quantities quantities;
   /// Parts that define the study, each as a name and a canonical text. Two studies with equal parts have equal points.

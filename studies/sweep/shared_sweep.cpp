@@ -39,7 +39,7 @@ compute::StoredPoint from_message(const std::string& message, const Sweep& sweep
     if (!output.is_null() && output.at(1).is_number()) stored.std_error = output.at(1).get<double>();
     point.outputs.push_back(stored);
   }
-  for (const ParameterValue& value : sweep.values(point.point)) point.inputs.push_back(value.shown);
+  point.inputs = stored_inputs(sweep.study(), sweep.values(point.point));
   return point;
 }
 

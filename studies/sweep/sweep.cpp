@@ -186,13 +186,23 @@ std::optional<std::vector<compute::StoredOutput>> measure_all(const Study& study
 
 }  // namespace
 
+std::vector<compute::StoredValue> stored_inputs(const Study& study, const PointValues& values) {
+  std::vector<compute::StoredValue> inputs;
+  for (const ParameterValue& value : values) inputs.push_back(value.shown);
+  if (study.level) {
+    inputs.emplace_back(study.level->scale);
+    inputs.emplace_back(static_cast<double>(study.level->replicate));
+  }
+  return inputs;
+}
+
 std::optional<compute::StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
                                                   const Cancellation* cancel, bool* ran_out, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
   compute::StoredPoint point;
   point.point = number;
   point.version = kVersion;
-  for (const ParameterValue& value : values) point.inputs.push_back(value.shown);
+  point.inputs = stored_inputs(study, values);
   try {
     const auto outputs = measure_all(study, values, cancel, progress);
     if (!outputs) return std::nullopt;

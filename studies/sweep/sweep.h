@@ -69,6 +69,10 @@ class Sweep {
   std::optional<compute::UnitSamples> samples_;
 };
 
+/// Returns the inputs of a point as they are stored: the values of the parameters, and the level of accuracy if the
+/// study has one (see ErrorLevel).
+std::vector<compute::StoredValue> stored_inputs(const Study& study, const PointValues& values);
+
 /// Computes one point of a study. An error is not thrown but recorded in the point. Returns nothing if the computation
 /// was cancelled.
 /// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; may be null

@@ -141,7 +141,10 @@ TEST_F(Store, ManyThreadsOfTwoProcessesShareThePoints) {
 }
 
 TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
-  { const ResultStore store(file(), layout(), IfExists::refuse); }
+  {
+    ResultStore store(file(), layout(), IfExists::refuse);
+    store.record(point(0));
+  }
   EXPECT_EQ(message(layout(), IfExists::refuse), "TMP/s.sqlite");
   EXPECT_EQ(message(layout(), IfExists::resume), "");
   StoreLayout changed = layout();
@@ -152,6 +155,25 @@ TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
   EXPECT_EQ(message(other, IfExists::resume), "TMP/s.sqlite");
   EXPECT_EQ(message(changed, IfExists::overwrite), "");
   EXPECT_EQ(message(changed, IfExists::resume), "");
+}
+
+/// A store in which no point has succeeded does not block another run, unless another process uses it.
+TEST_F(Store, AStoreWithoutResultsIsReplaced) {
+  StoredPoint failed = point(3);
+  failed.failed = true;
+  failed.reason = "a wrong key";
+  failed.outputs.clear();
+  { ResultStore(file(), layout(), IfExists::refuse).record(failed); }
+  StoreLayout changed = layout();
+  changed.parts[0].second = "b";
+  {
+    ResultStore store(file(), changed, IfExists::refuse);
+    EXPECT_TRUE(store.finished().empty());
+    store.record(failed);
+    store.record(point(1));
+  }
+  EXPECT_EQ(message(changed, IfExists::refuse), "TMP/s.sqlite");
+  EXPECT_EQ(ResultStore(file(), changed, IfExists::resume).finished().size(), 2U);
 }
 
 TEST_F(Store, ANewerFormatIsSaidToBeOne) {

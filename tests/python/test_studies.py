@@ -305,6 +305,9 @@ class Studies(unittest.TestCase):
         self.assertTrue(found.is_feasible)
         self.assertLessEqual(found.best["lens_thickness_mm"], 4 + 1e-6)
         self.assertEqual(found.best_design["element.base_mm"], found.best["element.base_mm"])
+        self.assertEqual(len(found.designs.rows), found.evaluations)
+        self.assertEqual(sum(found.designs["feasible"]) > 0, True)
+        self.assertIn("<svg", found._repr_svg_())
         none = rt.optimize(
             BRICK,
             {"element.base_mm": (0.5, 5)},

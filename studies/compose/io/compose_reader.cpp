@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -126,6 +127,14 @@ ComposeRequest read_compose(const Study& study) {
   request.min_area_fraction = document.number("compose.min_area_fraction");
   request.max_area_fraction = document.number("compose.max_area_fraction");
   if (const auto most = document.number_if("compose.max_zones")) request.max_zones = static_cast<std::size_t>(*most);
+  if (const auto step = document.number_if("compose.area_fraction_step")) {
+    const double steps = 1.0 / *step;
+    if (std::abs(steps - std::round(steps)) > 1e-9 * steps)
+      document.fail(
+          "compose.area_fraction_step",
+          fmt::format("must divide the whole area into equal steps, such as 0.01 or 0.05, got {}", shortest(*step)));
+    request.area_steps = static_cast<std::size_t>(std::llround(steps));
+  }
   check_fractions(document, request);
   if (document.has("compose.price"))
     for (const auto& [name, price] : document.named("compose.price"))

@@ -192,6 +192,8 @@ std::string prices_text(const Study& study, const ComposeRequest& request, const
 
 std::string proof_text(const Composition& composition) {
   const std::size_t cells = composition.catalogue.size();
+  if (!composition.complete)
+    return fmt::format("best part so far, with the {} cells evaluated before the interruption\n", cells);
   switch (composition.proof) {
     case Proof::family: return fmt::format("optimal: all {} cells of the family were evaluated\n", cells);
     case Proof::catalogue:

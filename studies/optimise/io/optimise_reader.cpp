@@ -9,6 +9,7 @@
 #include "design/io/design_format.h"
 #include "studies/quantity/io/constraint_reader.h"
 #include "studies/quantity/io/point_texts.h"
+#include "studies/quantity/machining_limits.h"
 
 namespace retrace::studies {
 namespace {
@@ -59,6 +60,22 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
   return keys;
 }
 
+/// Returns the constraints of the study, and the limits of its tool and machine. A constraint of the study replaces the
+/// limit on the same quantity.
+std::vector<Constraint> constraints_of(const Study& study) {
+  std::vector<Constraint> constraints = read_constraints(study);
+  const std::size_t given = constraints.size();
+  for (const Constraint& limit : machining_limits(study)) {
+    const auto is_given = [&](const Constraint& constraint) { return constraint.quantity == limit.quantity; };
+    const bool is_computed =
+        std::ranges::any_of(study.quantities, [&](const auto& quantity) { return quantity->name() == limit.quantity; });
+    if (is_computed &&
+        std::ranges::none_of(constraints.begin(), constraints.begin() + static_cast<std::ptrdiff_t>(given), is_given))
+      constraints.push_back(limit);
+  }
+  return constraints;
+}
+
 void check_parameters(const Study& study) {
   for (const Parameter& parameter : study.parameters)
     if (parameter.distribution)
@@ -80,7 +97,8 @@ OptimiseRequest read_optimise(const Study& study) {
   request.band_keys = read_band_keys(document, study);
   constexpr double percent = 100.0;
   request.band_loss = document.number("optimize.band_loss_percent") / percent;
-  request.constraints = read_constraints(study);
+  request.is_rounded = document.text("optimize.rounding") == "drawing";
+  request.constraints = constraints_of(study);
   return request;
 }
 

@@ -6,6 +6,8 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
+#include "design/io/design_document.h"
+#include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -18,7 +20,19 @@ Json variant_json(const Study& study, const Variant& variant) {
     json[study.parameters[k].name] = std::visit([](const auto& v) { return Json(v); }, variant.values[k].shown);
   for (std::size_t k = 0; k < variant.outputs.size(); ++k)
     if (variant.outputs[k].value) json[study.quantities[k]->name()] = *variant.outputs[k].value;
+  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
+    if (variant.outputs[k].value && variant.outputs[k].std_error > 0.0)
+      json[study.quantities[k]->name() + "_std_error"] = variant.outputs[k].std_error;
   if (variant.objective) json["objective"] = *variant.objective;
+  if (variant.objective && variant.objective_error > 0.0) json["objective_std_error"] = variant.objective_error;
+  return json;
+}
+
+/// Returns an evaluated design, and whether it satisfies all constraints.
+Json design_json(const Study& study, const Variant& variant) {
+  Json json = variant_json(study, variant);
+  json["feasible"] = variant.feasible();
+  if (variant.failed) json["reason"] = variant.reason;
   return json;
 }
 
@@ -55,6 +69,7 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   json["constraints"] = Json::array();
   for (const Constraint& constraint : request.constraints) json["constraints"].push_back(constraint.text());
   if (optimum.best) json["best"] = variant_json(study, *optimum.best);
+  if (optimum.resolution > 0.0) json["resolution"] = optimum.resolution;
   if (!optimum.best && optimum.complete) json["infeasible"] = optimum.infeasible_reason;
   json["pareto"] = Json::array();
   for (const Variant& variant : optimum.front) json["pareto"].push_back(variant_json(study, variant));
@@ -68,6 +83,8 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   json["band_loss"] = request.band_loss;
   json["bands"] = Json::array();
   for (const ToleranceBand& band : optimum.bands) json["bands"].push_back(band_json(band));
+  json["designs"] = Json::array();
+  for (const Variant& variant : optimum.designs) json["designs"].push_back(design_json(study, variant));
   json["refined_by"] = optimum.method;
   json["evaluations"] = optimum.evaluations;
   json["seed"] = study.seed;
@@ -75,27 +92,82 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   return result_text("retrace.optimum/1", json, {}, optimum.complete);
 }
 
+namespace {
+
+void add_values(const Variant& variant, CsvWriter& csv) {
+  for (const ParameterValue& value : variant.values)
+    if (const double* const number = std::get_if<double>(&value.shown))
+      csv.add(*number);
+    else
+      csv.add_quoted(std::get<std::string>(value.shown));
+}
+
+}  // namespace
+
 std::string front_csv(const Study& study, const Optimum& optimum) {
   CsvWriter csv;
   for (const Parameter& parameter : study.parameters) csv.add(parameter.name);
   for (const auto& quantity : study.quantities) csv.add(quantity->name());
   csv.row("objective");
   for (const Variant& variant : optimum.front) {
-    for (const ParameterValue& value : variant.values)
-      if (const double* const number = std::get_if<double>(&value.shown))
-        csv.add(*number);
-      else
-        csv.add_quoted(std::get<std::string>(value.shown));
+    add_values(variant, csv);
     for (const compute::StoredOutput& output : variant.outputs) csv.add(output.value);
     csv.row(*variant.objective);
   }
   return csv.text();
 }
 
+std::string designs_csv(const Study& study, const Optimum& optimum) {
+  CsvWriter csv;
+  for (const Parameter& parameter : study.parameters) csv.add(parameter.name);
+  for (const auto& quantity : study.quantities) {
+    csv.add(quantity->name());
+    csv.add(quantity->name() + "_std_error");
+  }
+  csv.row("objective", "objective_std_error", "feasible", "reason");
+  for (const Variant& variant : optimum.designs) {
+    add_values(variant, csv);
+    for (std::size_t k = 0; k < study.quantities.size(); ++k) {
+      const bool has_value = k < variant.outputs.size() && variant.outputs[k].value;
+      csv.add(has_value ? variant.outputs[k].value : std::nullopt);
+      csv.add(has_value ? std::optional(variant.outputs[k].std_error) : std::nullopt);
+    }
+    csv.add(variant.objective);
+    csv.add(variant.objective ? std::optional(variant.objective_error) : std::nullopt);
+    csv.add(variant.feasible() ? 1 : 0);
+    csv.add_quoted(variant.reason);
+    csv.end_row();
+  }
+  return csv.text();
+}
+
+std::string variant_design_text(const Study& study, const Variant& variant, const std::string& comment) {
+  return design::design_text(make_candidate(study, variant.values).design(), comment);
+}
+
+std::string short_text(const Study& study, const OptimiseRequest& request, const Variant& variant) {
+  const auto& weights = request.objective.weights;
+  const std::string name = weights.size() == 1 ? weights.front().first : "objective";
+  const double value = weights.size() == 1 && !request.objective.uses_minimum
+                           ? *variant.objective / weights.front().second
+                           : *variant.objective;
+  std::string text = fmt::format("{} = {:.5g}", name, value);
+  for (std::size_t k = 0; k < variant.values.size(); ++k) {
+    const double* const number = std::get_if<double>(&variant.values[k].shown);
+    text += fmt::format(
+        "{}{} = {}", k == 0 ? " at " : ", ", study.parameters[k].name,
+        number != nullptr ? fmt::format("{:.5g}", *number) : std::get<std::string>(variant.values[k].shown));
+  }
+  return text;
+}
+
 std::string optimum_text(const Study& study, const OptimiseRequest& request, const Optimum& optimum) {
   if (!optimum.best)
     return optimum.complete ? "no feasible design: " + optimum.infeasible_reason + "\n" : std::string();
-  std::string text = "chosen:  " + variant_text(study, *optimum.best) + "\n";
+  std::string text = (optimum.complete ? "chosen:  " : "best so far:  ") + variant_text(study, *optimum.best) + "\n";
+  if (optimum.resolution > 0.0)
+    text += fmt::format("    other designs near it are better by at most {:.2g} (with a confidence of 95 %)\n",
+                        optimum.resolution);
   for (const Rejected& rejected : optimum.rejected)
     text += fmt::format("not chosen ({}):  {}\n    {}\n", rejected.role, variant_text(study, rejected.variant),
                         rejected.why);

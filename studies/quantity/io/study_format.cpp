@@ -76,7 +76,9 @@ constexpr Words kKinds = {"rre",
                           "machining_time_per_element_s",
                           "area_rate_mm2_per_h",
                           "process_sa_nm",
-                          "root_radius_um"};
+                          "root_radius_um",
+                          "machine_travel_mm",
+                          "edge_life_margin_mm"};
 constexpr FormerWord kFormerKinds[] = {{"full_element_share", "full_element_area_fraction"}};
 constexpr Words kFractionKinds = {"rre", "ledger", "far_field"};
 constexpr Words kLedger = {"ledger"};
@@ -178,6 +180,7 @@ constexpr Row kAnalysisRows[] = {
 constexpr Words kStrategies = {"two-step", "unidirectional"};
 constexpr Words kUnidirectional = {"unidirectional"};
 constexpr Words kSurfaces = {"as_designed", "as_cut"};
+constexpr Words kLimitsHold = {"hold", "ignore"};
 constexpr NumberRange kSane{.low = 1e-6, .high = 1e6};
 constexpr NumberRange kSaneOrNone{.low = 0.0, .high = 1e6};
 constexpr Condition kFinishing[] = {
@@ -204,8 +207,28 @@ void set_surface(MachiningProcess& process, const Value& value) {
   process.surface_as_cut = std::get<double>(value) == 1.0;
 }
 
+Value edge_life(const MachiningProcess& process) {
+  return process.edge_life_mm ? Value(*process.edge_life_mm) : Value();
+}
+void set_edge_life(MachiningProcess& process, const Value& value) {
+  process.edge_life_mm = std::get<double>(value);
+}
+Value limits_hold(const MachiningProcess& process) {
+  return process.has_limits ? 0.0 : 1.0;
+}
+void set_limits_hold(MachiningProcess& process, const Value& value) {
+  process.has_limits = std::get<double>(value) == 0.0;
+}
+
 using Process = MachiningProcess;
 constexpr Row kMachiningRows[] = {
+    {"machine", Text{"the name of a machine or a machine file"}, kNone,
+     "Machine that cuts the prisms: the name of a shipped machine (`\"ideal\"`, `\"paper\"`, `\"thesis\"`), or a "
+     "[machine file](machine_file.md), relative to the folder of the study. A name with an extension is a file. "
+     "Machining times are then those of the plan of `retrace fabricate`."},
+    {"process", Text{"the name of a process or a process file"}, kNone,
+     "Process that gives the values of the other keys unless they are given here: the name of a shipped process, or a "
+     "process file, relative to the folder of the study. A name with an extension is a file."},
     {"tool_width_mm", Number{kSane}, Computed{"the element's width"},
      "Width of the tool. An element wider than the tool needs several passes.", access_by<tool_width, set_tool_width>},
     {"clearance_um", Number{kSaneOrNone}, 200.0,
@@ -227,8 +250,19 @@ constexpr Row kMachiningRows[] = {
     {"dwell_s", Number{{.low = 0.0, .high = 3600.0}}, 0.1, "Dwell time at every root.", access<&Process::dwell_s>},
     {"strategy", Word{kStrategies}, "two-step", "Cutting strategy. `\"unidirectional\"` has no finishing cuts.",
      access_by<strategy, set_strategy>},
-    {"edge_radius_um", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Radius of the tool's cutting edge.",
+    {"edge_radius_um", Number{{.low = 0.0, .high = 1000.0}}, Computed{"the design's `surface.root_radius_um`"},
+     "Radius of the tool's cutting edge. It is also the radius of the roots, unless the design or the study gives "
+     "`surface.root_radius_um`.",
      access<&Process::edge_radius_um>},
+    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
+     "Tool life of an edge: its maximum path length in the material. It has an effect only together with `machine`.",
+     access_by<edge_life, set_edge_life>},
+    {"limits", Word{kLimitsHold}, "hold",
+     "Limits of the tool and the machine in `retrace optimize`. `\"hold\"`: the tool fits the elements "
+     "(`tool_fit_mm` >= 0, if `tool_width_mm` is given), the axes reach all facets (`machine_travel_mm` >= 0, with "
+     "`machine`), and an edge lasts for an element (`edge_life_margin_mm` >= 0, with `edge_life_mm`). A "
+     "`[[constraint]]` on one of these quantities replaces its limit. `\"ignore\"`: no such limits.",
+     access_by<limits_hold, set_limits_hold>},
     {"surface", Word{kSurfaces}, "as_designed",
      "Surface of the facets. `\"as_designed\"`: the values of the design. `\"as_cut\"`: facets have the published "
      "roughness and waviness of the strategy, and roots have the radius of the cutting edge. Values from `--set` and "
@@ -256,6 +290,7 @@ constexpr std::string_view kQuantityOrWeights = "a quantity or a table of weight
 constexpr std::string_view kObjective =
     "Objective: a quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`. With a table, the "
     "objective is the weighted sum.";
+constexpr Words kRoundings = {"drawing", "none"};
 constexpr Row kOptimiseRows[] = {
     {"maximize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"maximize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
@@ -268,7 +303,10 @@ constexpr Row kOptimiseRows[] = {
     {"scan", Integer{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
      "designs are equally spaced from end to end of its interval. For several continuous parameters, they are the "
-     "corners of the intervals and Sobol points."},
+     "corners of the intervals and Sobol points. Sizes of prisms are moved to the nearest sizes that divide the part."},
+    {"rounding", Word{kRoundings}, "drawing",
+     "Rounding of continuous parameters in the result. `\"drawing\"`: the roundest values whose objective cannot be "
+     "distinguished from the best one, preferably sizes that divide the part. `\"none\"`: no rounding."},
     {"bands_of", Texts{}, kNone,
      "Keys of the design, or keys of parameters of the study, for which tolerance bands are computed."},
     {"band_loss_percent", Number{{.low = 0.0, .low_included = false, .high = 100.0}}, 1.0,
@@ -312,6 +350,8 @@ constexpr Row kComposeRows[] = {
                                "Minimum fraction of the area for each zone of the part."}),
     renamed("most_share", Row{"max_area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
                               "Maximum fraction of the area for each zone."}),
+    {"area_fraction_step", Number{{.low = 0.001, .high = 0.5}}, kNone,
+     "Step of the area fractions of the best part, such as 0.01 or 0.05: each fraction is a multiple of it."},
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
      "Prices of quantities. The merit of a part is the minimum of all goals, minus the price for each unit of the "
      "quantity's mean over the part."},

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/length_units.h"
 #include "core/message_text.h"
 #include "core/named_file.h"
 #include "core/number_format.h"
@@ -16,6 +17,8 @@
 #include "core/toml_file.h"
 #include "design/io/design_format.h"
 #include "design/io/design_reader.h"
+#include "fabrication/job/io/process_files.h"
+#include "fabrication/machine/io/machine_files.h"
 #include "studies/quantity/io/point_texts.h"
 #include "studies/quantity/io/quantity_reader.h"
 #include "studies/quantity/io/study_format.h"
@@ -79,10 +82,60 @@ void check_settings_have_effect(const Document& document, const Study& study) {
                                in_quotes(document.text("analysis.engine"))));
 }
 
+/// Returns the name of a machine or a process. A name with an extension is a file, relative to the folder of the study.
+std::string name_or_file(const Document& document, const std::string& key) {
+  const fs::path name = document.text_if(key);
+  if (!name.has_extension() || name.is_absolute()) return name.string();
+  return (fs::path(document.source()).parent_path() / name).string();
+}
+
+/// Replaces the values that [machining] does not give by those of the process that it names.
+void take_process(const Document& document, MachiningProcess& machining) {
+  if (machining.process.empty()) return;
+  const fabrication::Process process =
+      fabrication::load_process(machining.process, document.where("machining.process"));
+  const auto take = [&](const char* key, double& value, double of_process) {
+    if (!document.has(std::string("machining.") + key)) value = of_process;
+  };
+  take("clearance_um", machining.clearance_um, process.clearance_mm * kUmPerMm);
+  take("roughing_depth_um", machining.roughing_depth_um, process.roughing_depth_um);
+  take("finishing_depth_um", machining.finishing_depth_um, process.finishing_depth_um);
+  take("plough_length_um", machining.plough_length_um, process.plough_length_mm * kUmPerMm);
+  take("roughing_feed_mm_per_min", machining.roughing_feed_mm_per_min, process.roughing_feed_mm_per_min);
+  take("finishing_feed_mm_per_min", machining.finishing_feed_mm_per_min, process.finishing_feed_mm_per_min);
+  take("traverse_feed_mm_per_min", machining.traverse_feed_mm_per_min, process.retract_feed_mm_per_min);
+  take("dwell_s", machining.dwell_s, process.dwell_s);
+  const bool finishes = machining.strategy != fabrication::Strategy::unidirectional;
+  if (finishes && !document.has("machining.finishing_cuts")) machining.finishing_cuts = process.finishing_cuts;
+}
+
 MachiningProcess machining_of(const Document& document) {
   MachiningProcess process;
   schema::fill(document, *schema::table_at(study_format().root, "machining"), "machining", &process);
+  process.machine = name_or_file(document, "machining.machine");
+  process.process = name_or_file(document, "machining.process");
+  take_process(document, process);
   return process;
+}
+
+/// Checks that the machine of [machining] exists and is valid.
+/// \throw InputError
+void check_machine(const Document& document) {
+  const std::string machine = name_or_file(document, "machining.machine");
+  if (machine.empty()) return;
+  const InputLocation where = document.where("machining.machine");
+  if (fabrication::load_machine(machine, where).tilt == fabrication::Tilt::head)
+    throw InputError(where,
+                     "must be a machine with a tilting table, because prisms are cut, got " + in_quotes(machine));
+}
+
+/// Returns the files that [machining] names.
+std::vector<design::NamedFile> files_of_machining(const Document& document) {
+  std::vector<design::NamedFile> files;
+  for (const std::string key : {"machining.machine", "machining.process"})
+    if (const fs::path name = name_or_file(document, key); name.has_extension())
+      files.push_back({name, key, document.where(key)});
+  return files;
 }
 
 /// Returns a message that explains why the key of a parameter is invalid. Empty if the key is valid.
@@ -329,10 +382,15 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   check_columns(study, quantity_locations);
   check_keys_once(study);
   check_settings_have_effect(document, study);
-  analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
+  // Settings that exclude each other and invalid files are refused before any point is computed.
+  analysis_of(document, seed);
+  machining_of(document);
+  check_machine(document);
   read_designs(document, designs, study);
   std::vector<design::NamedFile> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());
+  const std::vector<design::NamedFile> of_machining = files_of_machining(document);
+  named.insert(named.end(), of_machining.begin(), of_machining.end());
   study.files = {source_name};
   for (const auto& [file, design] : study.design_texts) study.files.push_back(file);
   for (const design::NamedFile& each : named) study.files.push_back(each.file.string());
@@ -344,21 +402,60 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides, s
   return parse_study(design::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides, seed);
 }
 
+namespace {
+
+/// Gives the roots of a design and the edge of the tool the same radius, unless the radius of each is given.
+void link_edge_to_root(const Document& document, const std::string& text, PointTexts& texts, design::Design& varied,
+                       MachiningProcess& machining) {
+  constexpr std::string_view root = "surface.root_radius_um";
+  if (varied.elements() == nullptr || !std::holds_alternative<geometry::RtpElement>(varied.part().element)) return;
+  const bool has_root = varied.document->has(root);
+  const bool has_edge = document.has("machining.edge_radius_um");
+  if (has_edge == has_root) return;
+  if (has_root) {
+    machining.edge_radius_um = kUmPerMm * varied.part().edges.root_radius_mm;
+    return;
+  }
+  if (!(machining.edge_radius_um > 0.0)) return;
+  texts.for_design.push_back(fmt::format("{}={}", root, shortest(machining.edge_radius_um)));
+  varied = design::parse_design(text, texts.design, texts.for_design);
+}
+
+/// Returns the settings for a level of accuracy. A larger target error is used, or fewer rays if their number is given.
+AnalysisSettings at_level(AnalysisSettings analysis, const std::optional<ErrorLevel>& level) {
+  if (!level) return analysis;
+  constexpr double max_target = 0.5;
+  constexpr std::uint64_t min_rays = 1024;
+  if (level->scale != 1.0) {
+    if (analysis.rays)
+      analysis.rays =
+          std::max(std::min(*analysis.rays, min_rays),
+                   static_cast<std::uint64_t>(static_cast<double>(*analysis.rays) / (level->scale * level->scale)));
+    else
+      analysis.target_error = std::min(max_target, level->scale * analysis.target_error.value_or(kDefaultTargetError));
+  }
+  analysis.seed += level->replicate;
+  return analysis;
+}
+
+}  // namespace
+
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
   PointTexts texts = texts_at(study, values);
   std::shared_ptr<const Document> given = study.document;
   if (!texts.for_study.empty())
     given = std::make_shared<const Document>(schema::with(study_format(), *given, texts.for_study));
   const Document& document = *given;
-  const MachiningProcess machining = machining_of(document);
+  MachiningProcess machining = machining_of(document);
   // The surface that results from machining comes first, so that surface keys of the study override it.
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
-  const design::Design varied =
-      design::parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
+  const std::string& text = study.design_texts.at(texts.design);
+  design::Design varied = design::parse_design(text, texts.design, texts.for_design);
+  link_edge_to_root(document, text, texts, varied, machining);
   design::require_supported(varied,
                             {.what = "a study", .solids = true, .entrances = true, .shells = true, .wet_backs = true});
-  return {varied, analysis_of(document, study.seed), machining};
+  return {varied, at_level(analysis_of(document, study.seed), study.level), machining};
 }
 
 Warnings keys_without_effect(const Study& study) {

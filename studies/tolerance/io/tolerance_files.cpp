@@ -131,4 +131,13 @@ std::string tolerance_text(const Study& study, const ToleranceRequest& request, 
   return text;
 }
 
+std::string so_far_text(const ToleranceResult& result, const ToleranceRequest& request) {
+  std::string text = fmt::format("so far, {} parts", result.parts);
+  if (result.yield) return text + fmt::format(": yield {}", percent_text(*result.yield, request.confidence));
+  if (result.quantities.empty() || !result.quantities.front().spread) return text;
+  const QuantityTolerance& first = result.quantities.front();
+  return text + fmt::format(": {} has the mean {:.5g} and the standard deviation {:.2g}", first.quantity,
+                            first.spread->mean, first.spread->deviation);
+}
+
 }  // namespace retrace::studies

@@ -1,0 +1,78 @@
+#pragma once
+
+// Function that a search maximizes. Its values may contain random errors with known standard errors.
+
+#include <compare>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "studies/quantity/error_level.h"
+
+namespace retrace::studies {
+
+/// Point of a search: a combination of discrete values, and the positions of all continuous parameters.
+struct SearchPoint {
+  std::size_t combination = 0;    ///< index of the combination of discrete values
+  std::vector<double> fractions;  ///< positions of the continuous parameters in their intervals, from 0 to 1
+
+  bool operator==(const SearchPoint&) const = default;
+  auto operator<=>(const SearchPoint& other) const {
+    if (combination != other.combination)
+      return combination < other.combination ? std::partial_ordering::less : std::partial_ordering::greater;
+    return fractions <=> other.fractions;
+  }
+};
+
+/// A point that is to be observed, with the accuracy of the observation.
+struct SearchTrial {
+  SearchPoint at;
+  ErrorLevel level;
+};
+
+/// Value and its standard error.
+struct Estimate {
+  double value = 0.0;
+  double std_error = 0.0;
+};
+
+/// Result of a trial.
+struct Observation {
+  std::optional<Estimate> objective;  ///< none if the objective has no value at this point
+  /// Amount by which each limit is exceeded; a limit is satisfied if its value is at most 0. Infinite if the limited
+  /// quantity has no value.
+  std::vector<Estimate> excess;
+};
+
+/// Function that a search maximizes within limits.
+class SearchedFunction {
+ public:
+  SearchedFunction() = default;
+  virtual ~SearchedFunction() = default;
+  SearchedFunction(const SearchedFunction&) = delete;
+  SearchedFunction& operator=(const SearchedFunction&) = delete;
+
+  /// Observes points and returns the results in the given order.
+  virtual std::vector<Observation> observe(const std::vector<SearchTrial>& trials) = 0;
+  /// Returns true if a point satisfies all limits that can be checked without an observation.
+  virtual bool is_allowed(const SearchPoint& point) const {
+    static_cast<void>(point);
+    return true;
+  }
+  /// Returns points near `point` at which the objective may have a peak, such as sizes that divide the part.
+  /// \param within maximum change of each position
+  virtual std::vector<SearchPoint> peaks_near(const SearchPoint& point, double within) const {
+    static_cast<void>(point);
+    static_cast<void>(within);
+    return {};
+  }
+  /// Returns points near `point` with rounder values, the most preferred point first.
+  /// \param within maximum change of each position
+  virtual std::vector<SearchPoint> rounder_points(const SearchPoint& point, double within) const {
+    static_cast<void>(point);
+    static_cast<void>(within);
+    return {};
+  }
+};
+
+}  // namespace retrace::studies

@@ -1,0 +1,104 @@
+#include "studies/quantity/machine_plan.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "core/length_units.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/job/io/job_files.h"
+#include "fabrication/machine/io/machine_files.h"
+#include "studies/fabrication/job_maker.h"
+
+namespace retrace::studies {
+namespace {
+
+/// Maximum width of a chisel that a job allows.
+constexpr double kMaxToolWidthMm = 2.0;
+/// Allowed excess of the tool's width over the element's width: one nanometre.
+constexpr double kExcessMm = 1e-6;
+
+/// Returns the job that cuts the prisms of a design with the values of the process.
+fabrication::Job job_of_process(const design::Design& design, const geometry::RtpElement& prism,
+                                const MachiningProcess& process) {
+  JobRequest request;
+  request.machine = process.machine;
+  request.strategy = fabrication::kStrategyWords[static_cast<std::size_t>(process.strategy)];
+  request.tool_width_mm = process.tool_width_mm.value_or(std::min(prism.width_mm, kMaxToolWidthMm));
+  if (!process.process.empty()) request.process = process.process;
+  fabrication::Job job = make_job(design, request).job;
+  take_machining(process, job);
+  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead.
+  job.tool.edge_life_mm.reset();
+  fabrication::check_job(job, {design.source_name(), 0, ""});
+  return job;
+}
+
+/// Returns the smallest distance of the linear axes from their limits, at the roots of all elements and at the
+/// clearance above them.
+double travel_of(const fabrication::Job& job, const fabrication::Machine& machine,
+                 const std::vector<fabrication::CutElement>& elements) {
+  using geometry::Vec3;
+  double least = std::numeric_limits<double>::infinity();
+  const double depth_mm = fabrication::root_depth_mm(fabrication::blank_prism(job));
+  for (const bool rotated : {false, true}) {
+    if (std::ranges::none_of(elements, [&](const auto& element) { return element.rotated == rotated; })) continue;
+    for (const int facet : {1, 2}) {
+      const fabrication::CuttingPose pose =
+          fabrication::cutting_pose(job, machine, {.rotated = rotated, .facet = facet}, 0.0);
+      const fabrication::RigidMotion to_machine = fabrication::machine_from_workpiece(machine, pose.rounded);
+      for (const fabrication::CutElement& element : elements) {
+        if (element.rotated != rotated) continue;
+        for (const double z_mm : {-depth_mm, job.process.clearance_mm}) {
+          const Vec3 point = to_machine.point(element.origin_mm + Vec3(0.0, 0.0, z_mm));
+          const std::array<double, 3> words = fabrication::linear_words(machine, point, pose.rounded);
+          const fabrication::LinearAxis* const axes[] = {&machine.x, &machine.y, &machine.z};
+          for (std::size_t k = 0; k < words.size(); ++k) {
+            const fabrication::Interval limits = axes[k]->limits_mm.value;
+            least = std::min({least, words[k] - limits.low, limits.high - words[k]});
+          }
+        }
+      }
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+void take_machining(const MachiningProcess& process, fabrication::Job& job) {
+  job.tool.edge_radius_um = process.edge_radius_um;
+  job.tool.edge_life_mm = process.edge_life_mm;
+  job.process.clearance_mm = process.clearance_um / kUmPerMm;
+  job.process.roughing_depth_um = process.roughing_depth_um;
+  job.process.finishing_depth_um = process.finishing_depth_um;
+  job.process.finishing_cuts = process.finishing_cuts;
+  job.process.plough_length_mm = process.plough_length_um / kUmPerMm;
+  job.process.dwell_s = process.dwell_s;
+  job.process.roughing_feed_mm_per_min = process.roughing_feed_mm_per_min;
+  job.process.finishing_feed_mm_per_min = process.finishing_feed_mm_per_min;
+  job.process.retract_feed_mm_per_min = process.traverse_feed_mm_per_min;
+}
+
+MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess& process) {
+  MachinePlan plan;
+  const auto& prism = std::get<geometry::RtpElement>(design.part().element);
+  if (process.tool_width_mm && *process.tool_width_mm > prism.width_mm + kExcessMm) return plan;
+  const fabrication::Job job = job_of_process(design, prism, process);
+  const fabrication::Machine machine = fabrication::load_machine(job.machine, {});
+  const std::vector<fabrication::CutElement> elements = fabrication::cut_elements(job);
+  plan.elements = elements.size();
+  try {
+    plan.travel_mm = travel_of(job, machine, elements);
+    const fabrication::Plan planned = fabrication::make_plan(job, machine);
+    plan.time_s = planned.time.total_s();
+    const double cut_mm = std::accumulate(planned.program_cuts_mm.begin(), planned.program_cuts_mm.end(), 0.0);
+    plan.cut_per_element_mm = cut_mm / static_cast<double>(std::max<std::size_t>(1, elements.size()));
+  } catch (const InputError&) {
+    // The machine cannot reach a facet, or an axis would exceed a limit. The missing values violate all limits.
+  }
+  return plan;
+}
+
+}  // namespace retrace::studies

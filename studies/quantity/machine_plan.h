@@ -1,0 +1,30 @@
+#pragma once
+
+// Plans the prisms of a candidate on the machine of [machining]: machining time, travel of the axes and tool life.
+
+#include <cstddef>
+#include <optional>
+
+#include "design/design.h"
+#include "studies/quantity/machining.h"
+
+namespace retrace::studies {
+
+/// Results of a plan for a machine. A value is missing if the machine or the tool cannot cut the part.
+struct MachinePlan {
+  std::size_t elements = 0;      ///< number of elements that are cut
+  std::optional<double> time_s;  ///< machining time of the plan
+  /// Smallest distance of X, Y or Z from a limit of the axis while facets are cut. It is negative beyond a limit.
+  std::optional<double> travel_mm;
+  std::optional<double> cut_per_element_mm;  ///< path length of the edge in the material, for one element
+};
+
+/// Replaces the tool's edge with its life, and the process of a job, by those of [machining].
+void take_machining(const MachiningProcess& process, fabrication::Job& job);
+
+/// Plans all elements of a design like `retrace job` and `retrace fabricate`.
+/// \pre the process names a machine
+/// \throw InputError for a design that cannot be cut on any machine, or if a file is invalid
+MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess& process);
+
+}  // namespace retrace::studies

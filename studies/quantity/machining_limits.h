@@ -1,0 +1,21 @@
+#pragma once
+
+// Limits of the tool and the machine that an optimization keeps by default.
+
+#include <vector>
+
+#include "studies/quantity/constraint.h"
+#include "studies/quantity/study.h"
+
+namespace retrace::studies {
+
+/// Returns the limits that the table [machining] of a study implies. They are limits on the quantities `tool_fit_mm`,
+/// `machine_travel_mm` and `edge_life_margin_mm`. Returns none if the study ignores them, or if its first design is not
+/// an array of prisms.
+std::vector<Constraint> machining_limits(const Study& study);
+
+/// Returns a study that also computes the quantities of its machining limits. Quantities that the study already has are
+/// not added.
+Study with_machining_limits(Study study);
+
+}  // namespace retrace::studies
