@@ -29,3 +29,6 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/validation_test.cpp
   LIBRARIES retrace::validation nlohmann_json::nlohmann_json)
+retrace_test(element_light_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_sample_test.cpp
+  LIBRARIES retrace::photometry retrace::photometry_by_rays retrace::rre)
