@@ -15,6 +15,9 @@ constexpr double kSameCorner = 1e-9;
 constexpr double kMinFacetRoom = 1e-6;
 // Distance between the outline of an excerpt and all its facets, as a fraction of the element's size.
 constexpr double kExcerptMargin = 0.25;
+// Distance by which the sides of an excerpt are moved outwards, as a fraction of the element's size. Light then meets
+// the walls of cut elements, which are in the planes of the sides, before it meets the sides.
+constexpr double kBehindCells = 1e-9;
 
 Vec3 shift_of(const Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
@@ -77,7 +80,7 @@ class ExcerptBuilder {
 
   /// Adds the cells of an element, or a single cell that belongs to no element. Adds nothing if one of their facets
   /// reaches the entrance face.
-  void add(const Placement& placement, const std::vector<std::uint32_t>& cells, bool is_element) {
+  void add(const Placement& placement, const std::vector<std::uint32_t>& cells, ExcerptCell kind) {
     const SurfacePatch& patch = part_.patches[placement.patch];
     const Vec3 shift = shift_of(placement);
     for (const std::uint32_t c : cells)
@@ -90,7 +93,7 @@ class ExcerptBuilder {
       }
     const auto first = static_cast<std::uint32_t>(own().cells.size());
     for (const std::uint32_t c : cells) {
-      begin_cell(first, is_element);
+      begin_cell(first, kind);
       for (std::uint32_t f = 0; f < patch.cells[c].facet_count; ++f)
         add_facet(patch, patch.facets[patch.cells[c].first_facet + f], shift);
       end_cell();
@@ -100,12 +103,11 @@ class ExcerptBuilder {
   /// Adds a rectangular face that belongs to a side of the original part.
   /// \param corners_mm corners in the part frame, counter-clockwise as seen from outside
   void add_side(const std::vector<Vec3>& corners_mm, const Vec3& normal, FacetRole role) {
-    begin_cell(static_cast<std::uint32_t>(own().cells.size()), false);
+    begin_cell(static_cast<std::uint32_t>(own().cells.size()), ExcerptCell::side);
     std::vector<Vec3> moved;
     for (const Vec3& p : corners_mm) moved.push_back(frame_from_part_ * p);
     push_facet(moved, frame_from_part_.linear() * normal, moved.front(), role);
     end_cell();
-    excerpt_.has_sides = true;
   }
 
   ElementExcerpt finish() {
@@ -134,14 +136,14 @@ class ExcerptBuilder {
     return excerpt_.part.patches.front();
   }
 
-  void begin_cell(std::uint32_t first_of_element, bool is_element) {
+  void begin_cell(std::uint32_t first_of_element, ExcerptCell kind) {
     PatchCell cell;
     cell.first_facet = static_cast<std::uint32_t>(own().facets.size());
     cell.lower.setConstant(INFINITY);
     cell.upper.setConstant(-INFINITY);
     cell.first_of_element = first_of_element;
     own().cells.push_back(cell);
-    excerpt_.is_element.push_back(is_element);
+    excerpt_.cells.push_back(kind);
   }
   void end_cell() {
     PatchCell& cell = own().cells.back();
@@ -224,8 +226,10 @@ void add_sides(const Part& part, const Rectangle& box, const Eigen::Isometry3d& 
     const Vec3 normal(along.y(), -along.x(), 0.0);
     const auto wall = [&](double low, double high_p, double high_q, FacetRole role) {
       if (!(high_p > low && high_q > low)) return;
-      builder.add_side({{p.x(), p.y(), low}, {q.x(), q.y(), low}, {q.x(), q.y(), high_q}, {p.x(), p.y(), high_p}},
-                       normal, role);
+      std::vector<Vec3> corners = {
+          {p.x(), p.y(), low}, {q.x(), q.y(), low}, {q.x(), q.y(), high_q}, {p.x(), p.y(), high_p}};
+      for (Vec3& corner : corners) corner += kBehindCells * part.size_mm * normal;
+      builder.add_side(corners, normal, role);
     };
     wall(bottom_mm, 0.0, 0.0, FacetRole::border_wall);
     wall(0.0, top_at(p), top_at(q), FacetRole::side);
@@ -259,7 +263,7 @@ std::vector<PartElement> part_elements(const Part& part) {
 ElementExcerpt excerpt_around(const Part& part, const PartElement& element, const Eigen::Isometry3d& frame_from_part,
                               double thickness_mm, double reach_mm) {
   ExcerptBuilder builder(part, frame_from_part, thickness_mm);
-  builder.add(part.placements[element.placement], element.cells, true);
+  builder.add(part.placements[element.placement], element.cells, ExcerptCell::own_element);
   for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
     const Placement& placement = part.placements[p];
     const SurfacePatch& patch = part.patches[placement.patch];
@@ -274,7 +278,7 @@ ElementExcerpt excerpt_around(const Part& part, const PartElement& element, cons
       for (const std::uint32_t c : cells)
         for (std::uint32_t f = 0; f < patch.cells[c].facet_count; ++f)
           is_element = is_element || patch.facets[patch.cells[c].first_facet + f].role == FacetRole::retro_facet;
-      builder.add(placement, cells, is_element);
+      builder.add(placement, cells, is_element ? ExcerptCell::other_element : ExcerptCell::land);
     }
   }
   const Vec2 reach = Vec2::Constant(reach_mm + part.size_mm);

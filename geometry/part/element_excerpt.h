@@ -25,19 +25,22 @@ struct PartElement {
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
 std::vector<PartElement> part_elements(const Part& part);
 
+/// Kind of a cell in an excerpt: a cell of the element, of another element, of flat land, or a side of the original
+/// part.
+enum class ExcerptCell { own_element, other_element, land, side };
+
 /// Element with its surroundings as a separate part. Coordinates are in the frame of the excerpt.
 struct ElementExcerpt {
   /// Facets of the element and of its surroundings. The entrance face is the plane z = `thickness_mm`. The original
   /// part continues beyond `outline`, which is only the limit of the excerpt. `entrance_pieces` is empty.
   Part part;
-  /// For each cell of the patch: true if the cell belongs to an element, false for land and for sides of the original
-  /// part. The cells of the element itself come first, and their element_id() is 0.
-  std::vector<bool> is_element;
-  bool has_sides = false;  ///< true if the excerpt contains sides of the original part
+  /// Kind of each cell of the patch. The cells of the element itself come first. For all cells of an element,
+  /// element_id() is the index of its first cell.
+  std::vector<ExcerptCell> cells;
 };
 
 /// Cuts out an element and all cells whose distance from the element in plan is at most `reach_mm`. Sides of the
-/// original part that are near the element are added as facets. Cells that reach the plane of the entrance face are
+/// original part that are within this distance are added as facets. Cells that reach the plane of the entrance face are
 /// omitted.
 /// \param frame_from_part maps the part frame to the frame of the excerpt
 /// \param thickness_mm height of the entrance face in the frame of the excerpt

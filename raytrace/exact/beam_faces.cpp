@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "raytrace/exact/excerpt_light.h"
 #include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
@@ -106,8 +107,8 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
     return;
   }
   const bool is_entrance = role == FacetRole::entrance;
-  if (!is_entrance && step.scene.policy.ends_at_sides) {
-    step.record.add_to_ledger(beam, Account::side_exit, power_of(beam));
+  if (!is_entrance && step.scene.policy.excerpt != nullptr) {
+    step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
     return;
   }
   const FaceStops& stops = step.scene.setup.stops;
@@ -222,12 +223,30 @@ void stop_at_horizon(const BeamStep& step, const Fragment& fragment) {
     step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
 }
 
+/// Returns true if a facet belongs to a cell of the back. The sides of a larger part, which an excerpt contains as
+/// facets, belong to no cell.
+bool counts_as_cell(const BeamScene& scene, const Candidate& facet) {
+  return scene.policy.excerpt == nullptr || scene.policy.excerpt->kind_of(facet.cell) != geometry::ExcerptCell::side;
+}
+
+/// Returns true if light that meets its first cell is traced further.
+bool is_traced(const BeamStep& step, const CellInstance& cell) {
+  const ExcerptLight* const excerpt = step.scene.policy.excerpt;
+  if (excerpt == nullptr) return true;
+  const Beam& from = step.beam;
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& corner : from.corners) middle += corner / static_cast<double>(from.corners.size());
+  return excerpt->is_own(from.entry.of(middle), cell);
+}
+
 }  // namespace
 
 void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate& facet) {
   const Optics& optics = step.scene.setup.optics;
   const Beam& from = step.beam;
   const Plane& plane = facet.plane;
+  const bool is_cell = counts_as_cell(step.scene, facet);
+  if (is_cell && !from.trail.first && !is_traced(step, facet.cell)) return;
   Beam beam = arrived(step, fragment, plane);
   const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
   if (is_wall && optics.absorbing_walls) {
@@ -238,7 +257,7 @@ void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate&
   const double ratio = ratio_at_face(optics, facet.role, from.inside);
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, from.inside, cos_incidence);
-  beam.trail.meet(facet.cell);
+  if (is_cell) beam.trail.meet(facet.cell);
   beam.light.rotate_basis_to_interface(from.direction, against);
   const CoherentLight reflected = beam.light.reflected(f);
   const CoherentLight transmitted = beam.light.transmitted(f);

@@ -20,6 +20,7 @@
 namespace retrace::raytrace {
 
 struct BeamScene;
+struct ExcerptLight;
 class BeamWalk;
 
 /// Default of BeamPolicy::truncated_goal: maximum power that is not traced. It is much smaller than other errors.
@@ -59,9 +60,8 @@ struct BeamPolicy {
   /// the textured facets that it has met, from which the far field computes specular and scattered light. It is allowed
   /// only for textures for which has_phases() is true.
   bool keeps_phases = false;
-  /// If true, light that reaches the sides of the outline is not traced further. Its power is added to `side_exit`. Use
-  /// this for an excerpt of a larger part that continues beyond the outline.
-  bool ends_at_sides = false;
+  /// Set if the part is an excerpt of a larger part. It must outlive the trace.
+  const ExcerptLight* excerpt = nullptr;
 };
 
 struct BeamResult {

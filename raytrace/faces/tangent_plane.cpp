@@ -75,23 +75,29 @@ std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, con
   return std::nullopt;
 }
 
-std::optional<double> concentration(const geometry::EntranceSurface& surface, const TangentPlane& plane,
-                                    const Vec3& to_source, double index, double height_mm, double step_mm) {
+std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurface& surface, const TangentPlane& plane,
+                                                  const Vec3& to_source, double index, double height_mm,
+                                                  double step_mm) {
   const auto hit = [&](const Vec2& at) {
     const geometry::EntranceSurface::SurfaceSample sample = surface.at(at);
     if (!is_defined(sample)) return Vec2(NAN, NAN);
     return Vec2(at + (height_mm - sample.height_mm) * lean(refracted_inside(sample.slope, to_source, index)));
   };
   const Vec2 at = plane.point_mm.head<2>();
-  Eigen::Matrix2d spread;
+  Eigen::Matrix2d behind_surface;
   for (const Eigen::Index axis : {0, 1}) {
     const Vec2 by = step_mm * Vec2::Unit(axis);
-    spread.col(axis) = (hit(at + by) - hit(at - by)) / (2.0 * step_mm);
+    behind_surface.col(axis) = (hit(at + by) - hit(at - by)) / (2.0 * step_mm);
   }
-  const double of_plane = 1.0 - plane.surface_slope.dot(lean(refracted_inside(plane.surface_slope, to_source, index)));
-  const double ratio = of_plane / spread.determinant();
-  if (!std::isfinite(ratio) || !(ratio > 0.0)) return std::nullopt;
-  return ratio;
+  const Vec2& slope = plane.surface_slope;
+  const Eigen::Matrix2d behind_plane =
+      Eigen::Matrix2d::Identity() - lean(refracted_inside(slope, to_source, index)) * slope.transpose();
+  if (!(behind_surface.determinant() > 0.0) || !(behind_plane.determinant() > 0.0)) return std::nullopt;
+  // Displacements in plan, and those in the frame of the tangent plane.
+  Eigen::Matrix<double, 3, 2> in_part;
+  in_part << Eigen::Matrix2d::Identity(), slope.transpose();
+  const Eigen::Matrix2d frame_from_plan = (plane.frame_from_part * in_part).topRows<2>();
+  return Eigen::Matrix2d(frame_from_plan * behind_surface.inverse() * behind_plane * frame_from_plan.inverse());
 }
 
 double rise_above(const geometry::TouchingPlane& plane, const Vec3& to_source) {
@@ -155,6 +161,21 @@ std::optional<SurfaceSag> fitted_sag(const geometry::EntranceSurface& surface, c
   }
   sag.error_mm = (powers * coefficients - heights).cwiseAbs().maxCoeff();
   return sag;
+}
+
+Eigen::Matrix2d SurfaceSag::curvature_per_mm() const {
+  Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+  for (const Term& term : terms) {
+    if (term.i + term.j != 2) continue;
+    if (term.i == 1) {
+      second(0, 1) += term.coefficient;
+      second(1, 0) += term.coefficient;
+    } else {
+      const Eigen::Index axis = term.i == 2 ? 0 : 1;
+      second(axis, axis) += 2.0 * term.coefficient;
+    }
+  }
+  return second;
 }
 
 surface_models::FacetForm squared_slope(const SurfaceSag& sag, const Vec2& per_height) {

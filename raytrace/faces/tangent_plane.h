@@ -40,14 +40,18 @@ Vec3 refracted_inside(const Vec2& slope, const Vec3& to_source, double index);
 std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, const Vec3& target_mm,
                                    const Vec3& to_source, double index);
 
-/// Returns the ratio of the illuminance behind the surface to the illuminance behind its tangent plane, both on the
-/// same horizontal plane. The ratio is computed from the directions of neighbouring rays after refraction. Returns
-/// nothing if the surface is not defined around the tangent point, or if the rays cross each other before they reach
-/// the horizontal plane.
+/// Returns the matrix K that describes how a curved surface displaces light relative to its tangent plane. Light that
+/// would reach a point of a horizontal plane from the point e of the tangent plane, relative to the tangent point, if
+/// the surface were plane, reaches it from the point K e behind the surface. K is computed from the directions of
+/// neighbouring rays after refraction. Its determinant is the ratio of the illuminance behind the surface to the
+/// illuminance behind the tangent plane. Coordinates are those of the frame of the tangent plane. Returns nothing if
+/// the surface is not defined around the tangent point, or if the rays cross each other before they reach the
+/// horizontal plane.
 /// \param height_mm height of the horizontal plane
 /// \param step_mm distance of the neighbouring rays from the tangent point
-std::optional<double> concentration(const geometry::EntranceSurface& surface, const TangentPlane& plane,
-                                    const Vec3& to_source, double index, double height_mm, double step_mm);
+std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurface& surface, const TangentPlane& plane,
+                                                  const Vec3& to_source, double index, double height_mm,
+                                                  double step_mm);
 
 /// Returns the increase of the height above a plane, along z, per unit length of a ray towards the source. Light that
 /// crosses the plane within an area in plan has a cross-section equal to this area times the returned value.
@@ -73,6 +77,9 @@ struct SurfaceSag {
   std::vector<Term> terms;         ///< i + j >= 2
   surface_models::FacetForm form;  ///< sum of the terms, in the frame of the tangent plane
   double error_mm = 0.0;           ///< maximum difference from the surface at the sample points
+
+  /// Returns the matrix of second derivatives at the tangent point.
+  Eigen::Matrix2d curvature_per_mm() const;
 };
 /// Fits a polynomial to the height of a surface above its tangent plane within a square about the tangent point. Points
 /// where the surface is not defined are ignored. Returns nothing if too few points remain.

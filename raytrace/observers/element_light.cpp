@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/outline/convex_decomposition.h"
+#include "raytrace/exact/excerpt_light.h"
 #include "raytrace/exact/flat_polygon.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/observers/photometric_geometry.h"
@@ -17,13 +18,17 @@ using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
 // Maximum number of neighbours that bound the portion of an element. The nearest elements are used.
 constexpr std::size_t kMaxNeighbours = 48;
-// Maximum distance in plan between an element and the other cells of its excerpt, in element sizes.
-constexpr double kSurroundings = 1.5;
+// Maximum distance in plan between an element and the other cells of its excerpt: kSurroundings element sizes and
+// kReflectedReach times the distance from the entrance face to the lowest point of the element. Light that the entrance
+// face reflects totally to other elements travels far. Behind a plane surface, the light that leaves an excerpt of this
+// size changes the returned power by less than 1e-4.
+constexpr double kSurroundings = 3.0;
+constexpr double kReflectedReach = 4.0;
 // Half width of the square in which a polynomial is fitted to the surface, relative to the largest coordinate of the
 // polygon from shadow_of().
 constexpr double kFittedWidth = 1.25;
-// Distance from the tangent point to the rays that concentration() compares, in element sizes.
-constexpr double kConcentrationStep = 0.05;
+// Distance from the tangent point to the rays that entry_displacement() compares, in element sizes.
+constexpr double kRayDistance = 0.05;
 // Area below which a polygon counts as empty, as a fraction of the squared element size.
 constexpr double kEmptyArea = 1e-9;
 // Distance below which corners are merged, in element sizes.
@@ -53,17 +58,74 @@ Polygon as_polygon(const FlatPolygon& polygon) {
   return {polygon.begin(), polygon.end()};
 }
 
-/// Returns the projection of an element onto the tangent plane, along the light inside the part. If there were no other
-/// elements, all light that enters through this polygon would meet the element first.
-FlatPolygon shadow_of(const PartElement& element, const TangentPlane& plane, const Vec3& inside_direction) {
-  const Vec3 own = plane.frame_from_part * inside_direction;
-  std::vector<Vec2> points;
-  for (const Vec3& corner : element.corners_mm) {
-    const Vec3 at = plane.to_frame(corner);
-    points.push_back((at - at.z() / own.z() * own).head<2>());
+/// A vertical side of the part.
+struct Side {
+  Vec2 on_mm = Vec2::Zero();  ///< point of the side
+  Vec2 outward = Vec2::UnitX();
+
+  double excess(const Vec3& p) const { return outward.dot(p.head<2>() - on_mm); }
+};
+
+/// Returns the corners of the mirror image of an element behind a side.
+std::vector<Vec3> mirrored_at(const Side& side, std::vector<Vec3> corners_mm) {
+  for (Vec3& p : corners_mm) p.head<2>() -= 2.0 * side.excess(p) * side.outward;
+  return corners_mm;
+}
+
+/// Returns the corners of an element and of the mirror images that light can reach. The light that a side reflects to
+/// the element is light that travels straight to the mirror image of the element behind this side. Light may be
+/// reflected by up to two sides.
+/// \param reach_mm maximum horizontal distance that light travels before it meets the element
+std::vector<std::vector<Vec3>> images_of(const PartElement& element, const Polygon& outline, const Vec3& inside,
+                                         double reach_mm) {
+  std::vector<Side> sides;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
+    const Side side{outline[k], {along.y(), -along.x()}};
+    double nearest_mm = INFINITY;
+    for (const Vec3& corner : element.corners_mm) nearest_mm = std::min(nearest_mm, -side.excess(corner));
+    if (nearest_mm < reach_mm) sides.push_back(side);
   }
-  const Polygon hull = geometry::convex_hull(std::move(points));
-  return {hull.begin(), hull.end()};
+  std::vector<std::vector<Vec3>> images = {element.corners_mm};
+  for (const Side& first : sides) {
+    const double towards = first.outward.dot(inside.head<2>());
+    if (!(towards > 0.0)) continue;
+    images.push_back(mirrored_at(first, element.corners_mm));
+    const Vec2 reflected = inside.head<2>() - 2.0 * towards * first.outward;
+    for (const Side& second : sides)
+      if (second.outward.dot(reflected) > 0.0)
+        images.push_back(mirrored_at(first, mirrored_at(second, element.corners_mm)));
+  }
+  return images;
+}
+
+/// Returns the mean height of the corners that are seen as corners of the outline of an element from the direction of
+/// the light. The outline of a cube corner is its rim.
+double rim_height(const std::vector<Vec3>& corners_mm, const Vec3& inside) {
+  const auto seen = [&](const Vec3& p) { return Vec2((p - p.z() / inside.z() * inside).head<2>()); };
+  std::vector<Vec2> points;
+  for (const Vec3& corner : corners_mm) points.push_back(seen(corner));
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Vec2& of_hull : geometry::convex_hull(std::move(points)))
+    for (const Vec3& corner : corners_mm)
+      if (seen(corner) == of_hull) {
+        sum += corner.z();
+        count += 1.0;
+      }
+  return sum / count;
+}
+
+/// Returns the projection of the corners of an element onto the tangent plane, along the light inside the part. If
+/// there were no other elements, all light that enters through the hull of these points would meet the element first.
+/// \param inside direction of the light in the frame of the tangent plane
+Polygon shadow_of(const std::vector<Vec3>& corners_mm, const TangentPlane& plane, const Vec3& inside) {
+  std::vector<Vec2> points;
+  for (const Vec3& corner : corners_mm) {
+    const Vec3 at = plane.to_frame(corner);
+    points.push_back((at - at.z() / inside.z() * inside).head<2>());
+  }
+  return geometry::convex_hull(std::move(points));
 }
 
 }  // namespace
@@ -82,6 +144,16 @@ struct ElementLight::Bounds {
   FlatPolygon lit(FlatPolygon polygon) const {
     cut(polygon, of_part, merge_mm);
     return polygon;
+  }
+  /// Returns the bounds of points e, given the bounds of the points K e.
+  Bounds before(const Eigen::Matrix2d& displacement) const {
+    Bounds changed = *this;
+    for (std::vector<HalfPlane>* const halves : {&changed.of_part, &changed.of_neighbours})
+      for (HalfPlane& half : *halves) {
+        const Vec2 normal = displacement.transpose() * Vec2(half.a, half.b);
+        half = {normal.x(), normal.y(), half.c};
+      }
+    return changed;
   }
   FlatPolygon cell() const {
     FlatPolygon polygon = {Vec2(-diameter_mm, -diameter_mm), Vec2(diameter_mm, -diameter_mm),
@@ -196,25 +268,49 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
     const std::optional<TangentPlane> of_other = plane_of(other, to_source, index);
     near.push_back(of_other ? std::optional(Vec2(of_other->point_mm.head<2>())) : std::nullopt);
   }
-  const Bounds bounds = bounds_of(*plane, to_source, near);
   const double empty_mm2 = kEmptyArea * part_.size_mm * part_.size_mm;
-  const FlatPolygon shadow = shadow_of(own, *plane, refracted_inside(plane->surface_slope, to_source, index));
-  const FlatPolygon portion = bounds.lit(bounds.cell());
-  const FlatPolygon lit_shadow = bounds.lit(shadow);
-  FlatPolygons pieces;
-  if (portion.size() >= 3 && raytrace::area(portion) > empty_mm2) {
-    pieces.push_back(portion);
-    if (lit_shadow.size() >= 3) subtract(lit_shadow, portion, empty_mm2, bounds.merge_mm, pieces);
-  }
-  if (pieces.empty()) {
+  const Bounds bounds = bounds_of(*plane, to_source, near);
+  const FlatPolygon lit_cell = bounds.lit(bounds.cell());
+  if (lit_cell.size() < 3 || raytrace::area(lit_cell) <= empty_mm2) {
     scene->is_lit = false;
     return scene;
+  }
+  const Vec3 direction = refracted_inside(plane->surface_slope, to_source, index);
+  const Vec3 inside = scene->direction(direction);
+  const double rim_mm = rim_height(own.corners_mm, direction);
+  scene->rim_path_mm = (rim_mm - plane->point_mm.z()) / direction.z();
+  const std::optional<Eigen::Matrix2d> displacement =
+      entry_displacement(*surface_, *plane, to_source, index, rim_mm, kRayDistance * part_.size_mm);
+  if (!displacement) return nullptr;
+  const double denser = displacement->determinant();
+  if (denser > kMaxConcentration || denser < 1.0 / kMaxConcentration) return nullptr;
+  // The tracer divides the light where it would enter through the tangent plane. There, the light that a convex surface
+  // lets in covers a smaller area.
+  const Bounds model_bounds = bounds.before(*displacement);
+  const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
+  if (portion.size() < 3) return nullptr;
+  // Light that meets the element first enters within the shadows of the element and of its mirror images. Light between
+  // the shadows meets other elements first, and the tracer ignores it (ExcerptLight).
+  const double height_mm = plane->point_mm.z() - own.lower_mm.z();
+  const double reach_mm = height_mm * direction.head<2>().norm() / -direction.z();
+  Polygon entries;
+  for (const std::vector<Vec3>& image : images_of(own, part_.outline, direction, reach_mm)) {
+    const Polygon shadow = shadow_of(image, *plane, inside);
+    if (model_bounds.lit({shadow.begin(), shadow.end()}).size() >= 3)
+      entries.insert(entries.end(), shadow.begin(), shadow.end());
+  }
+  FlatPolygons pieces = {portion};
+  if (!entries.empty()) {
+    entries = geometry::convex_hull(std::move(entries));
+    const FlatPolygon lit_entries = model_bounds.lit({entries.begin(), entries.end()});
+    if (lit_entries.size() >= 3) subtract(lit_entries, portion, empty_mm2, bounds.merge_mm, pieces);
   }
 
   Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
   frame_from_part.linear() = plane->frame_from_part;
   frame_from_part.translation() = Vec3(0.0, 0.0, thickness_mm) - plane->frame_from_part * plane->point_mm;
-  scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm, kSurroundings * part_.size_mm);
+  scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm,
+                                            kSurroundings * part_.size_mm + kReflectedReach * height_mm);
   geometry::Part& made = scene->excerpt.part;
   double face_mm2 = 0.0;
   Vec2 largest_mm = Vec2::Zero();
@@ -235,17 +331,15 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
   made.entrance_area_mm2 = face_mm2;
   scene->portion_mm = as_polygon(portion);
-  scene->fraction = raytrace::area(portion) * fraction_per_mm2(*plane, to_source);
+  scene->fraction = raytrace::area(lit_cell) * fraction_per_mm2(*plane, to_source);
   scene->to_source = scene->direction(to_source);
-  const std::optional<double> denser =
-      concentration(*surface_, *plane, to_source, index, own.upper_mm.z(), kConcentrationStep * part_.size_mm);
-  const std::optional<SurfaceSag> sag =
-      fitted_sag(*surface_, *plane, kFittedWidth * largest_coordinate(as_polygon(shadow)));
-  if (!denser || *denser > kMaxConcentration || *denser < 1.0 / kMaxConcentration || !sag) return nullptr;
+  double extent_mm = largest_coordinate(entries);
+  for (const FlatPolygon& piece : pieces) extent_mm = std::max(extent_mm, largest_coordinate(as_polygon(piece)));
+  const std::optional<SurfaceSag> sag = fitted_sag(*surface_, *plane, kFittedWidth * extent_mm);
+  if (!sag) return nullptr;
   scene->sag = *sag;
-  const Vec3 inside = scene->direction(refracted_inside(plane->surface_slope, to_source, index));
   scene->squared_slope = squared_slope(*sag, inside.head<2>() / inside.z());
-  scene->power_factor = *denser * face_mm2 * fraction_per_mm2(*plane, to_source);
+  scene->power_factor = denser * face_mm2 * fraction_per_mm2(*plane, to_source);
   return scene;
 }
 
@@ -280,6 +374,42 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
+/// Light behind a curved surface, which converges or diverges inside the part. Let phi(x) be the optical path that the
+/// surface adds where light enters, as a function of the point x of the tangent plane where it leaves.
+struct Convergence {
+  Eigen::Matrix2d second;  ///< second derivatives of phi
+  Vec2 first;              ///< gradient of phi at the centre of the entrance face
+  double path_mm = 0.0;    ///< length of the path inside the part of the light that leaves at the tangent point
+};
+
+Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, const TexturedHit& entry) {
+  Convergence of;
+  const Eigen::Matrix2d slope = beam.entry_from_exit.linear();
+  const Eigen::Matrix2d gradients = entry.path_per_height * slope.transpose() * scene.sag.curvature_per_mm();
+  of.second = gradients * slope;
+  of.first = gradients * (beam.entry_from_exit.translation() + beam.centre_mm);
+  // All fragments of a wave must have the same phase, so the path must not depend on the polygon of the beam.
+  const Vec2 exit = -beam.centre_mm;
+  of.path_mm = (beam.phase_mm + beam.direction.head<2>().dot(exit) +
+                scene.to_source.head<2>().dot(beam.entry_from_exit * exit)) /
+               beam.index;
+  return of;
+}
+
+/// Moves the polygon through which a beam leaves to the points where rays through the curved surface leave. After the
+/// length L of a path in the part, a ray is displaced by L grad phi / n, measured perpendicular to the light. The rim
+/// of the element bounds the beam, and the displacement at the rim is already part of the entry region. The power of
+/// the beam does not change. Therefore, its amplitude is multiplied by the square root of the ratio of the areas.
+void move_exit(const ElementScene& scene, const Convergence& convergence, ReturnedBeam& beam) {
+  const double length_mm = convergence.path_mm - scene.rim_path_mm;
+  const Vec2 across = beam.direction.head<2>() / beam.index;
+  const Eigen::Matrix2d along_plane =
+      Eigen::Matrix2d::Identity() + across * across.transpose() / (1.0 - across.squaredNorm());
+  const Eigen::Matrix2d per_gradient = length_mm / beam.index * along_plane;
+  for (Vec2& p : beam.exit_polygon_mm)
+    p += per_gradient * (convergence.first + convergence.second * (p - beam.centre_mm));
+}
+
 /// Adds hits that describe the curvature of the entrance surface to a beam.
 void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
   // The frame of a facet's form has a horizontal and a downward axis. These directions refer to the part frame, not to
@@ -298,14 +428,12 @@ void add_surface(const ElementScene& scene, ReturnedBeam& beam) {
   beam.hits.push_back(surface_hit(scene, beam, beam.direction.z()));
   // The surface makes the wave converge or diverge inside the part. If the optical path varies as phi(x) across the
   // wave, it varies as phi - L |grad phi|^2 / (2 n) after the length L (eikonal equation).
-  const Vec2 exit = geometry::centroid(beam.exit_polygon_mm) - beam.centre_mm;
-  const double path_mm =
-      beam.phase_mm + beam.direction.head<2>().dot(exit) + scene.to_source.head<2>().dot(beam.entry_from_exit * exit);
+  const Convergence convergence = convergence_of(scene, beam, entry);
   TexturedHit propagation = entry;
   propagation.form = &scene.squared_slope;
-  propagation.path_per_height =
-      -0.5 * path_mm / (beam.index * beam.index) * entry.path_per_height * entry.path_per_height;
+  propagation.path_per_height = -0.5 * convergence.path_mm / beam.index * entry.path_per_height * entry.path_per_height;
   beam.hits.push_back(propagation);
+  move_exit(scene, convergence, beam);
 }
 
 }  // namespace
@@ -314,18 +442,15 @@ BeamResult trace_element(const ElementScene& scene, const Optics& optics, const 
                          const std::vector<double>& cones_deg, BeamPolicy policy, const Cancellation* cancel,
                          const BeamObserver& observer) {
   const ElementExcerpt& excerpt = scene.excerpt;
-  policy.ends_at_sides = true;
+  const ExcerptLight selected{excerpt, scene.portion_mm};
+  policy.excerpt = &selected;
   Optics own_optics = optics;
   for (Shell& shell : own_optics.shells)
     for (ShellSurface* const surface : {&shell.outer, &shell.inner}) surface->normal = scene.direction(surface->normal);
   const BeamTracer tracer(excerpt.part);
   return tracer.trace(own_optics, illumination, cones_deg, policy, cancel, [&](const ReturnedBeam& beam) {
-    if (beam.depth == 0) return;
-    const std::uint64_t first = beam.trail.first ? beam.trail.first->id : 0;
-    const bool meets_element = beam.trail.first && excerpt.is_element[first];
-    const bool is_own =
-        meets_element ? first == 0 : geometry::contains(scene.portion_mm, geometry::centroid(beam.entry_polygon_mm));
-    if (!is_own) return;
+    // Light that met no cell has been reflected only by the sides and the entrance face.
+    if (beam.depth == 0 || !beam.trail.first) return;
     ReturnedBeam curved = beam;
     add_surface(scene, curved);
     observer(curved);

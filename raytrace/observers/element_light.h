@@ -34,8 +34,11 @@ struct ElementScene {
   SurfaceSag sag;
   surface_models::FacetForm squared_slope;  ///< see squared_slope(), for the light that enters
   Vec3 to_source = Vec3::UnitZ();           ///< in the frame of the excerpt
-  geometry::Polygon portion_mm;             ///< portion of the element on the tangent plane; see ElementPortion
-  double fraction = 0.0;                    ///< see ElementPortion::fraction
+  /// Portion of the element, displaced to the points where its light would enter through the tangent plane; see
+  /// ElementPortion and entry_displacement().
+  geometry::Polygon portion_mm;
+  double rim_path_mm = 0.0;  ///< length of the light's path inside the part from the tangent plane to the element's rim
+  double fraction = 0.0;     ///< see ElementPortion::fraction
   /// Factor by which powers of beams in the excerpt are multiplied to obtain fractions of the light that is incident on
   /// the part.
   double power_factor = 0.0;
@@ -105,11 +108,10 @@ Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, c
 
 /// Traces the light of one element and passes its returned beams to the observer. A beam belongs to the element if the
 /// first facet that it met is a facet of this element. If the beam first met something other than an element, it
-/// belongs to the element if it entered through ElementScene::portion_mm. Light that the outer side of the surface
-/// reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are fractions
-/// of the light that is incident on the excerpt, see ElementScene::power_factor.
-/// \param optics shells must not deflect light
-/// \param policy policy for the beams; BeamPolicy::ends_at_sides is ignored and always true
+/// belongs to the element if it entered through ElementScene::portion_mm (ExcerptLight). Light that the outer side of
+/// the surface reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are
+/// fractions of the light that is incident on the excerpt, see ElementScene::power_factor. \param optics shells must
+/// not deflect light \param policy policy for the beams; BeamPolicy::excerpt is ignored
 BeamResult trace_element(const ElementScene& scene, const Optics& optics, const Illumination& illumination,
                          const std::vector<double>& cones_deg, BeamPolicy policy, const Cancellation* cancel,
                          const BeamObserver& observer);

@@ -30,6 +30,9 @@ constexpr std::size_t kMinSamples = 24;
 constexpr double kAnglesOfMap = 8.0;
 // Maximum number of observation angles for which the full number of pairs is traced.
 constexpr double kAnglesOfSamples = 8.0;
+// Maximum number of pairs for which the light that rough facets scatter is computed. This light varies slowly from
+// element to element, and takes several times as long as the mean field.
+constexpr std::size_t kScatterSamples = 24;
 // Every kComparedSamples-th sample is compared with rays.
 constexpr std::size_t kComparedSamples = 6;
 // Minimum power of beams that are compared with rays. It is relative to the light that an element would return if
@@ -161,26 +164,36 @@ class Photometer::SurfaceMeasurement {
     raytrace::TangentError error;
     bool is_complete = false;
   };
-  /// Settings that share a direction of light, and the sample that is traced for them.
+  /// Elements and wavelengths that are traced for one direction of light, and their readings.
+  struct SampledReadings {
+    std::unique_ptr<const ElementSample> sample;
+    std::vector<ElementReading> readings;
+  };
+  /// Settings that share a direction of light, and the samples that are traced for them.
   struct Direction {
     EquivalentDirections alike;
     std::size_t lit_elements = 0;
-    std::unique_ptr<const ElementSample> sample;
-    std::vector<ElementReading> readings;
+    SampledReadings mean;       ///< light that rough facets do not scatter
+    SampledReadings scattered;  ///< light that rough facets scatter; no sample if all facets are smooth
   };
   /// Sample that is traced for one direction of light.
   struct SampleTask {
     std::size_t direction = 0;  ///< index of the direction
     std::size_t sample = 0;     ///< index of the sample of this direction
+    bool is_scattered = false;  ///< true: a sample of Direction::scattered
 
     /// Returns true if the tangent-plane model is compared with rays for this sample.
-    bool compares_rays() const { return sample % kComparedSamples == 0; }
+    bool compares_rays() const { return !is_scattered && sample % kComparedSamples == 0; }
+  };
+  /// Light of an element that is measured.
+  enum class MeasuredLight {
+    mean,     ///< only the mean field behind rough facets
+    complete  ///< with the light that rough facets scatter
   };
   /// Far field of one element, and the ratios that estimate the light that is missing in it.
   struct ElementField {
     const raytrace::FarField& field;
     double truncated = 0.0;  ///< truncated power, divided by the returned power
-    double beside = 0.0;     ///< power that leaves the excerpt around the element
     double unplaced = 0.0;   ///< scattered power of unknown direction, divided by all scattered power
     /// Factor that converts powers of the excerpt to fractions of the light on the element, divided by the
     /// transmittance of the body.
@@ -194,7 +207,10 @@ class Photometer::SurfaceMeasurement {
   /// Measures one sample.
   /// \param compares_rays true: the tangent-plane model is compared with rays
   ElementReading measure_element(const EquivalentDirections& directions, const SampledElement& sampled,
-                                 bool compares_rays) const;
+                                 MeasuredLight measured, bool compares_rays) const;
+  /// Measures the light that rough facets scatter, which is the difference between the complete light and the mean
+  /// field.
+  ElementReading measure_scattered(const EquivalentDirections& directions, const SampledElement& sampled) const;
   /// Returns readings without light, one for each setting.
   std::vector<WavelengthReading> dark_pieces(const EquivalentDirections& directions) const;
   /// Evaluates the far field of an element for one setting.
@@ -239,9 +255,14 @@ void Photometer::SurfaceMeasurement::add_direction(EquivalentDirections alike) {
   const std::vector<raytrace::ElementPortion> portions = elements_.portions(frame_of(own.front()).to_source, index);
   one.lit_elements = static_cast<std::size_t>(std::count_if(
       portions.begin(), portions.end(), [](const raytrace::ElementPortion& p) { return p.fraction > 0.0; }));
-  one.sample = std::make_unique<const ElementSample>(portions, weights, photometer_.max_element_samples(own));
-  one.readings.resize(one.sample->samples().size());
-  for (std::size_t k = 0; k < one.readings.size(); ++k) tasks_.push_back({directions_.size() - 1, k});
+  const auto add_sample = [&](SampledReadings& into, std::size_t max_count, bool is_scattered) {
+    into.sample = std::make_unique<const ElementSample>(portions, weights, max_count);
+    into.readings.resize(into.sample->samples().size());
+    for (std::size_t k = 0; k < into.readings.size(); ++k) tasks_.push_back({directions_.size() - 1, k, is_scattered});
+  };
+  const std::size_t count = photometer_.max_element_samples(own);
+  add_sample(one.mean, count, false);
+  if (photometer_.keeps_phases()) add_sample(one.scattered, std::min(count, kScatterSamples), true);
 }
 
 void Photometer::SurfaceMeasurement::trace(Progress* progress) {
@@ -253,7 +274,7 @@ void Photometer::SurfaceMeasurement::trace(Progress* progress) {
   const auto checked = static_cast<std::size_t>(first_other - tasks_.begin());
   trace_tasks(0, checked, all);
   for (const Direction& one : directions_)
-    for (const ElementReading& reading : one.readings)
+    for (const ElementReading& reading : one.mean.readings)
       if (photometer_.request_.engine == raytrace::Engine::automatic &&
           !(reading.error.max_angle_rad() <= allowed_rad()))
         throw BudgetError(text_of(Undiffracted::strong_curvature));
@@ -266,15 +287,38 @@ void Photometer::SurfaceMeasurement::trace_tasks(std::size_t from, std::size_t t
     TaskProgress::Task task(all);
     const SampleTask& traced = tasks_[from + k];
     Direction& one = directions_[traced.direction];
-    one.readings[traced.sample] =
-        measure_element(one.alike, one.sample->samples()[traced.sample], traced.compares_rays());
+    if (traced.is_scattered)
+      one.scattered.readings[traced.sample] =
+          measure_scattered(one.alike, one.scattered.sample->samples()[traced.sample]);
+    else
+      one.mean.readings[traced.sample] = measure_element(one.alike, one.mean.sample->samples()[traced.sample],
+                                                         MeasuredLight::mean, traced.compares_rays());
     task.finish();
   });
 }
 
+Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::measure_scattered(
+    const EquivalentDirections& directions, const SampledElement& sampled) const {
+  ElementReading complete = measure_element(directions, sampled, MeasuredLight::complete, false);
+  const ElementReading mean = measure_element(directions, sampled, MeasuredLight::mean, false);
+  complete.is_complete = complete.is_complete && mean.is_complete;
+  if (!complete.is_complete) return complete;
+  for (std::size_t s = 0; s < complete.pieces.size(); ++s) {
+    WavelengthReading& piece = complete.pieces[s];
+    const WavelengthReading& without = mean.pieces[s];
+    for (std::size_t k = 0; k < piece.per_sr.size(); ++k) piece.per_sr[k] -= without.per_sr[k];
+    for (std::size_t k = 0; k < piece.map_per_sr.size(); ++k) piece.map_per_sr[k] -= without.map_per_sr[k];
+    piece.rre -= without.rre;
+    piece.beyond_budget -= without.beyond_budget;
+  }
+  return complete;
+}
+
 Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::measure_element(
-    const EquivalentDirections& directions, const SampledElement& sampled, bool compares_rays) const {
+    const EquivalentDirections& directions, const SampledElement& sampled, MeasuredLight measured,
+    bool compares_rays) const {
   ElementReading reading;
+  const bool keeps_phases = measured == MeasuredLight::complete && photometer_.keeps_phases();
   const design::SpectralOptics& light = photometer_.model_.spectral[sampled.wavelength];
   const double transmittance = photometer_.body_transmittance(sampled.wavelength);
   const Vec3 to_source = frame_of(settings_[directions.front().index]).to_source;
@@ -296,7 +340,7 @@ Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::m
   raytrace::BeamPolicy policy;
   policy.cutoff = photometer_.cutoff_of_element();
   policy.separate_cells = true;
-  policy.keeps_phases = photometer_.keeps_phases();
+  policy.keeps_phases = keeps_phases;
   ConePower cone;
   const raytrace::BeamResult beams = trace_element(
       *scene, light.optics, illumination, cones, policy, cancel_, [&](const raytrace::ReturnedBeam& beam) {
@@ -309,11 +353,13 @@ Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::m
       });
   if (!beams.complete) return reading;
   const raytrace::FarField field = collector.finish();
-  const double truncated = beams.ledgers.back()[raytrace::Account::truncated];
-  const double beside = beams.ledgers.back()[raytrace::Account::side_exit];
+  // A trace of the mean field behind rough facets adds the scattered light to the truncated light. The truncated light
+  // is then determined by the trace of the complete light.
+  const bool is_mean_of_rough = photometer_.keeps_phases() && !keeps_phases;
+  const double truncated = is_mean_of_rough ? 0.0 : beams.ledgers.back()[raytrace::Account::truncated];
   common.rre = cone.returned;
-  common.truncated = truncated + beside;
-  if (photometer_.keeps_phases()) {
+  common.truncated = truncated;
+  if (keeps_phases) {
     common.rre += field.scattered_within(scene->frame(traced_frame(settings_[directions.front().index], {})),
                                          Angle::from_deg(cones.back()).rad()) -
                   cone.scattered_out;
@@ -323,7 +369,6 @@ Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::m
   const ElementField element = {
       .field = field,
       .truncated = common.rre > 0.0 ? truncated / common.rre : 0.0,
-      .beside = beside,
       .unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0,
       .factor = scene->power_factor / (scene->fraction * transmittance)};
   for (const SharedDirection& one : directions) reading.pieces.push_back(read_element(one, *scene, element, common));
@@ -354,10 +399,8 @@ Photometer::WavelengthReading Photometer::SurfaceMeasurement::read_element(const
   for (const double observation_deg : setting.observation_deg) {
     const Vec3 receiver = towards_receiver(frame, observation_deg);
     const double seen = element.field.intensity(receiver, kernel).per_sr;
-    // Light that leaves the excerpt around an element meets other elements. They are assumed to return it with the
-    // same efficiency.
-    const double missing = element.truncated * seen + element.beside * seen +
-                           element.unplaced * element.field.scattered_per_sr(receiver, kernel);
+    const double missing =
+        element.truncated * seen + element.unplaced * element.field.scattered_per_sr(receiver, kernel);
     piece.per_sr.push_back(element.factor * seen);
     piece.missing_per_sr.push_back(element.factor * missing);
   }
@@ -376,7 +419,9 @@ std::optional<std::vector<PhotometerReading>> Photometer::SurfaceMeasurement::re
   std::vector<PhotometerReading> readings(settings_.size());
   for (const Direction& one : directions_) {
     raytrace::TangentError error;
-    for (const ElementReading& reading : one.readings) {
+    for (const ElementReading& reading : one.scattered.readings)
+      if (!reading.is_complete) return std::nullopt;
+    for (const ElementReading& reading : one.mean.readings) {
       if (!reading.is_complete) return std::nullopt;
       error.add(reading.error);
     }
@@ -398,7 +443,14 @@ Photometer::WavelengthReading Photometer::SurfaceMeasurement::sum_of_samples(con
                                                                              std::size_t s) const {
   const PhotometerSetting& setting = settings_[one.alike[s].index];
   const auto estimate = [&](const auto& value) {
-    return sum_of(*one.sample, one.readings, [&](const ElementReading& r) { return value(r.pieces[s]); });
+    SampledSum all;
+    for (const SampledReadings* const light : {&one.mean, &one.scattered}) {
+      if (!light->sample) continue;
+      const SampledSum own =
+          sum_of(*light->sample, light->readings, [&](const ElementReading& r) { return value(r.pieces[s]); });
+      all = {all.value + own.value, std::hypot(all.std_error, own.std_error)};
+    }
+    return all;
   };
   WavelengthReading sum;
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
@@ -421,7 +473,7 @@ Photometer::WavelengthReading Photometer::SurfaceMeasurement::sum_of_samples(con
 EntranceModel Photometer::SurfaceMeasurement::entrance_model(const Direction& one,
                                                              const raytrace::TangentError& error) const {
   std::vector<std::size_t> traced;
-  for (const SampledElement& sampled : one.sample->samples()) traced.push_back(sampled.element);
+  for (const SampledElement& sampled : one.mean.sample->samples()) traced.push_back(sampled.element);
   std::sort(traced.begin(), traced.end());
   const auto distinct = std::unique(traced.begin(), traced.end()) - traced.begin();
   const design::OpticalModel& optics = photometer_.model_;
