@@ -150,9 +150,10 @@ struct CameraTracer::Impl {
         entrance_mm(EntranceSampler(p).bounding_box()),
         tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMaxTiles)),
         points(s.view.columns * s.view.rows, kPointsPerPass) {
+    has_shells = std::ranges::any_of(light, [](const WeightedOptics& at) { return !at.optics.shells.empty(); });
     if (curved != nullptr)
       entrance_face = make_entrance_face(*curved, p, centre_mm);
-    else if (engine == CameraEngine::fastest)
+    else if (engine == CameraEngine::fastest && !has_shells)
       cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeightedOptics& at : light) {
@@ -186,6 +187,8 @@ struct CameraTracer::Impl {
     const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
     return static_cast<std::uint32_t>(row * tiles_along + column);
   }
+  /// Returns true if all paths start outside of the part, where PathWalker::launch() finds the first surface.
+  bool launches_all() const { return entrance_face != nullptr || has_shells; }
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
   struct GuideTraining;
   std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel, GuideTraining* training = nullptr,
@@ -200,6 +203,7 @@ struct CameraTracer::Impl {
   Vec2 centre_mm;
   BackSurface surface;
   std::unique_ptr<const EntranceFace> entrance_face;  ///< null if the entrance face is plane
+  bool has_shells = false;                            ///< true if shells are in front of the part
   Lens lens;
   Luminaire luminaire;
   geometry::Rectangle entrance_mm;
@@ -300,6 +304,8 @@ std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ra
 
 Contact CameraTracer::Impl::contact_of(const WorldRay& ray) const {
   if (scene.film) return contact_with(*scene.film, part.thickness_mm, ray);
+  if (has_shells)  // shells may extend beyond the part and may deflect any ray towards it
+    return {Contact::Kind::outside, ray.origin, ray.origin, Eigen::Matrix3d::Identity(), 0};
   const double nearest = (middle - ray.origin).dot(ray.direction);
   if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
   if (!entrance_face)
@@ -335,15 +341,17 @@ struct CameraTracer::Impl::Block {
   }
 
   /// Traces the light of one path from a point outside of the part. This function is used for all paths if the entrance
-  /// face is curved, and for paths that do not meet the entrance face of a part with notches or holes. Returns false if
-  /// the light misses the part.
+  /// face is curved or if there are shells, and for paths that do not meet the entrance face of a part with notches or
+  /// holes. Returns false if the light misses the part.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
+    const double reflected_before = tally.other[Account::shell_reflected];
     PathWalker& walker = walkers[wavelength];
     accumulator.begin(start.owner);
     const bool meets_part = walker.launch(start.position, start.ray, key, replicate, sample);
     accumulator.on_transmission(start.owner, meets_part ? behind() - before : start.ray.light.power());
+    accumulator.on_shell_reflection(start.owner, tally.other[Account::shell_reflected] - reflected_before);
     if (!meets_part) return false;
     Contact& contact = paths[start.owner].contact;
     if (walker.arrival() == PathWalker::Arrival::entrance) contact.kind = Contact::Kind::face;
@@ -369,7 +377,7 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
   CameraSample& path = block.paths.emplace_back();
   path.contact = contact_of(ray);
   const Contact contact = path.contact;
-  path.is_corrected = contact.kind == Contact::Kind::face || entrance_face != nullptr;
+  path.is_corrected = contact.kind == Contact::Kind::face || launches_all();
   if (path.is_corrected) path.gain = scene.correction.gain_at(contact.local.head<2>());
   if (contact.kind == Contact::Kind::nothing) path.luminance = scene.surroundings.back_side;
   if (contact.kind == Contact::Kind::nothing || contact.kind == Contact::Kind::dark) return;
@@ -377,7 +385,7 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
   const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
   Ray start{direction, {}, contact.kind != Contact::Kind::outside, false};
   start.light.s_axis = direction.unitOrthogonal();
-  if (entrance_face) {
+  if (launches_all()) {
     block.launch({contact.local, start, number}, wavelength, {seed, kCameraChoiceStream}, point, pixel);
     return;
   }

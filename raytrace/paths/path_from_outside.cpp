@@ -39,6 +39,7 @@ bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std
   begin(key, replicate, sample);
   to_source_ = -ray.direction;
   splits_at_first_interface_ = false;
+  arrival_ = Arrival::none;
   State state;
   static_cast<Ray&>(state) = ray;
   state.position = position;

@@ -90,8 +90,9 @@ class PathWalker {
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
-  /// Place where the light of launch() first meets the part. `inside` means that the light starts in the part.
-  enum class Arrival { entrance, side, back, inside };
+  /// Place where the light of launch() first meets the part. `inside` means that the light starts in the part. `none`
+  /// means that the light meets only shells.
+  enum class Arrival { none, entrance, side, back, inside };
   /// Returns the place where the light of the last call of launch() has met the part.
   /// \pre this call has returned true
   Arrival arrival() const { return arrival_; }

@@ -68,7 +68,10 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
     : design_(std::move(design)), request_(std::move(request)), background_(std::move(background)) {
   requests::check(request_);
   design::require_supported(
-      design_, {.what = "a camera image", .balls = true, .solids = true, .entrances = true, .wet_backs = true});
+      design_,
+      {.what = "a camera image", .balls = true, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
+  if (!design_.shells.empty() && design_.is_infinite())
+    throw InputError(design_.where("array.extent"), "camera images show shells only in front of finite parts");
   lamp_ = lamp_of(request_);
   const materials::SpectralCurve dye = read_dye(request_.dye);
   if (!background_) background_ = background_of(request_);
@@ -172,9 +175,10 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
     const auto count = static_cast<double>(lights_.size());
     PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
     std::optional<CameraLight::Returned> returned = light.without_diffraction();
-    if (model_.entrance) {
-      tracers->no_diffraction = request_.diffraction ? NoDiffraction(raytrace::Obstacle::curved_entrance)
-                                                     : NoDiffraction(Undiffracted::not_requested);
+    if (model_.entrance || !design_.shells.empty()) {
+      tracers->no_diffraction = !request_.diffraction ? NoDiffraction(Undiffracted::not_requested)
+                                : model_.entrance     ? NoDiffraction(raytrace::Obstacle::curved_entrance)
+                                                      : NoDiffraction(Undiffracted::shells);
     } else if (!light.has_diffraction()) {
       tracers->no_diffraction = light.photometer().why_undiffracted();
     } else if (is_by_kernel && !tracers->no_diffraction) {

@@ -204,6 +204,7 @@ std::string text_of(const NoDiffraction& reason) {
     case Undiffracted::strong_curvature:
       return "the entrance surface is curved too strongly within the light of one element";
     case Undiffracted::too_many_beams: return "the exact engine would need too many beams";
+    case Undiffracted::shells: return "shells in front of the part are traced by rays";
     case Undiffracted::monte_carlo: return "the Monte-Carlo engine does not compute it";
   }
   return "";

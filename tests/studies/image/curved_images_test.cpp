@@ -59,6 +59,20 @@ Part bricks() {
   return build_part(finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.4, 1.9, 1.0));
 }
 
+/// Returns a plate in front of a part. Its inner surface is 2 mm above the middle of the part and may be inclined or
+/// curved.
+Shell plate_in_front(double index, double absorption_per_mm, double wedge_deg = 0.0, double radius_mm = 0.0) {
+  Shell shell;
+  shell.inner.vertex_mm = {0.0, 0.0, 2.0};
+  shell.outer.vertex_mm = {0.0, 0.0, 3.0};
+  shell.inner.normal = {std::sin(wedge_deg * pi / 180.0), 0.0, std::cos(wedge_deg * pi / 180.0)};
+  if (radius_mm != 0.0) shell.outer.curvature_per_mm = 1.0 / radius_mm;
+  shell.thickness_mm = 1.0;
+  shell.index = index;
+  shell.absorption_per_mm = absorption_per_mm;
+  return shell;
+}
+
 Entrance as_mesh(const Entrance& surface, const Part& part) {
   return std::make_shared<const SurfacePatch>(
       entrance_of_mesh(meshed(*std::get<0>(surface), 3.0, 40), MeshSide::top, Vec3::Zero(), part.outline));
@@ -78,6 +92,39 @@ TEST(CurvedCamera, PartIsInvisibleInUniformLight) {
       const CameraImage image = pictured(part, entrance, pmma(), scene, 3);
       for (const double luminance : image.luminance) EXPECT_NEAR(luminance, 7.0, 1e-6);
     }
+}
+
+// Shells that do not absorb light are invisible in uniform light, too. The light that they reflect comes from the
+// surroundings. A plate that absorbs light darkens the background behind it by its transmittance at normal incidence.
+TEST(CurvedCamera, ShellsAreInvisibleInUniformLight) {
+  const Part part = bricks();
+  const Entrance sphere = sphere_entrance(40.0, 1.2, centroid(part.outline));
+  CameraScene scene = scene_at(1.0, Vec3(0.0, 0.1, 1.0), Vec3::UnitZ(), 0.2, 0.2);
+  scene.lamp.illuminance_lx = 0.0;
+  scene.surroundings = {7.0, 7.0};
+  scene.view.width_mm = 6.0;
+  for (const Entrance* const entrance : {static_cast<const Entrance*>(nullptr), &sphere})
+    for (const Shell& shell :
+         {plate_in_front(1.5, 0.0), plate_in_front(1.5, 0.0, 4.0), plate_in_front(1.5, 0.0, 0.0, 30.0)}) {
+      Optics optics = pmma();
+      optics.shells = {shell, shell};
+      optics.shells.front().inner.vertex_mm.z() += 4.0;
+      optics.shells.front().outer.vertex_mm.z() += 4.0;
+      const CameraImage image = pictured(part, entrance, optics, scene, 2);
+      for (const double luminance : image.luminance) EXPECT_NEAR(luminance, 7.0, 1e-6);
+      // Pixels that show only shells do not show the part.
+      EXPECT_EQ(image.coverage.front(), 0.0);
+    }
+  Optics optics = pmma();
+  const double absorption_per_mm = 0.3;
+  optics.shells = {plate_in_front(1.5, absorption_per_mm)};
+  scene = scene_at(1.0, Vec3::UnitZ(), Vec3::UnitZ(), 0.2, 0.0);
+  scene.lamp.illuminance_lx = 0.0;
+  scene.surroundings = {0.0, 7.0};
+  scene.view.width_mm = 6.0;
+  const double through_surface = 1.0 - std::pow(0.5 / 2.5, 2.0);
+  EXPECT_NEAR(pictured(part, nullptr, optics, scene, 2).luminance.front(),
+              7.0 * through_surface * through_surface * std::exp(-absorption_per_mm), 1e-6);
 }
 
 TEST(CurvedCamera, PlaneSurfaceIsThePlaneFace) {
@@ -161,7 +208,7 @@ class Receiver : public ExitObserver {
 // The picture traces light backwards. Its intensity, the sum of luminance times area of the pixels, must be the
 // intensity that light from the lamp causes: the illuminance times the area of the beam times the power per solid
 // angle.
-TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
+void expect_equal_intensities(const Optics& optics) {
   const Part part = build_part(finite(HexagonalCube{0.6}, Arrangement::honeycomb, 2.6, 2.2, 1.0));
   const Vec2 middle = centroid(part.outline);
   const Entrance sphere = sphere_entrance(40.0, 1.2, middle);
@@ -174,7 +221,7 @@ TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
   scene.view.columns = scene.view.rows = 40;
   scene.view.width_mm = 4.0;
   scene.has_front_reflection = false;
-  const CameraImage image = pictured(part, &sphere, pmma(), scene, 32);
+  const CameraImage image = pictured(part, &sphere, optics, scene, 32);
   double intensity = 0.0;
   double variance = 0.0;
   for (std::size_t k = 0; k < image.luminance.size(); ++k) {
@@ -187,7 +234,7 @@ TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
   const EntranceSampler sampler(part);
   const BackSurface back(part, sampler.centre_mm());
   const auto face = make_entrance_face(sphere, part, sampler.centre_mm());
-  const PathSetup setup(part, back, sampler.centre_mm(), pmma(), light, {0.5}, kCameraPolicy, face.get());
+  const PathSetup setup(part, back, sampler.centre_mm(), optics, light, {0.5}, kCameraPolicy, face.get());
   Tally tally(1);
   PathWalker walker(setup, tally, &receiver);
   constexpr std::uint32_t kBatches = 32;
@@ -210,6 +257,13 @@ TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
   // Terms of higher order in the radii of the discs are neglected. Their relative contribution is at most 1e-2.
   EXPECT_NEAR(intensity, forwards, student_bound(1) * error + 0.01 * forwards);
   EXPECT_LT(error, 0.04 * forwards);
+}
+
+TEST(CurvedCamera, IntensityIsThatOfLightTracedForwards) {
+  expect_equal_intensities(pmma());
+  Optics behind_plate = pmma();
+  behind_plate.shells = {plate_in_front(1.5, 0.1)};
+  expect_equal_intensities(behind_plate);
 }
 
 TEST(CurvedCamera, GivesTheSameBytesWithAnyNumberOfThreads) {
