@@ -53,11 +53,12 @@ Json materials_json(const materials::MaterialLibrary& library) {
   return list;
 }
 
-/// Returns the template of `retrace init`. If requested, the array is made infinite.
+/// Returns the template of `retrace init`. If requested, the array is made infinite, unless the element is single.
 std::string template_of(const std::string& kind, const std::string& extent) {
   std::string text = design::design_template(kind);
   if (extent.empty() || extent == "finite") return text;
   const design::Design design = design::parse_design(text, kind);
+  if (design.part().array.arrangement == geometry::Arrangement::single) return text;
   return changed(*design.document, {{"array.extent", extent}}, true).toml;
 }
 

@@ -165,7 +165,8 @@ TEST(LiveEngine, AdaptsWhatIsLeftOfAnotherKind) {
             told(engine,
                  {{"ask", "set"}, {"design", before["design"]}, {"changes", {{"element.kind", to}}}, {"adapt", true}});
         EXPECT_EQ((*key_of(after, "element.kind"))["value"], to);
-        EXPECT_EQ((*key_of(after, "array.extent"))["value"], extent);
+        const bool is_single = from == "round_icc" || to == "round_icc";
+        EXPECT_EQ((*key_of(after, "array.extent"))["value"], is_single ? "finite" : extent) << from << " " << to;
         EXPECT_EQ(after["adapted"].empty(), from == to) << from << " " << to;
       }
 }
