@@ -42,7 +42,8 @@ void check_design(const design::Design& design) {
     throw InputError(design.where("array.arrangement"),
                      "must be \"single\" for retrace ranging; give an array as a file of cubes");
   if (!design.surface.is_smooth())
-    throw InputError(design.where_texture(), "must be \"none\" for retrace ranging, which traces smooth facets");
+    throw InputError(design.where_texture(),
+                     "facets must be smooth for retrace ranging, which does not compute scattered light");
   if (design.surface.entrance.scatters())
     throw InputError(design.where_entrance_scatters(),
                      "must be 0 for retrace ranging, which does not compute scattered light");

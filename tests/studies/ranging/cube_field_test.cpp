@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "design/io/design_reader.h"
+#include "design/optical_model.h"
+#include "raytrace/exact/beam_tracer.h"
 #include "studies/ranging/lit_cubes.h"
 #include "studies/ranging/ranging.h"
 #include "tests/studies/ranging/sector_model.h"
@@ -118,6 +120,30 @@ double power_within(const studies::CubeField& field, double radius, double step)
   for (std::size_t k = 0; k < directions.size(); ++k)
     sum += studies::returned_stokes(fields[k], raytrace::kUnpolarised).i / directions[k].z();
   return sum * step * step / (4.0 * std::numbers::pi * 1e-6 * field.beam_mm2());
+}
+
+/// Sectors do not overlap. The integral of the Stokes parameters over the far field is therefore the sum over all
+/// beams, which the tracer computes without fields.
+TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
+  SectorCube cube;
+  cube.aperture_mm = 4.0;
+  cube.incidence_deg = 15.0;
+  cube.azimuth_deg = 70.0;
+  const Vec3 to_source = SectorModel(cube, 8, 1).to_source();
+  const Stokes sent{1.0, 0.36, 0.48, 0.8};
+  const studies::CubeField field = corner_of(cube).field(to_source, 0, nullptr);
+  const double detail = 1e-6 * cube.wavelength_nm / cube.aperture_mm;
+  Stokes sum;
+  for (const Vec3& direction : directions_around(to_source, offsets_within(30.0 * detail, 121)))
+    sum += studies::returned_stokes(field.at(std::vector{direction}).front(), sent);
+  const design::Design design = design::parse_design(design_of(cube), "cube.toml");
+  const design::OpticalModel model = design::make_model(design, materials::MaterialLibrary::shipped());
+  const raytrace::Illumination light{Angle::from_deg(cube.incidence_deg), Angle::from_deg(cube.azimuth_deg), sent};
+  const Stokes beams = raytrace::BeamTracer(model.part).trace(model.optics, light, {0.1}, {}).stokes[0];
+  EXPECT_NEAR(sum.q / sum.i, beams.q / beams.i, 0.02);
+  EXPECT_NEAR(sum.u / sum.i, beams.u / beams.i, 0.02);
+  EXPECT_NEAR(sum.v / sum.i, beams.v / beams.i, 0.02);
+  EXPECT_GT(std::abs(beams.u) + std::abs(beams.v), 0.1 * beams.i);
 }
 
 /// The power beyond a large angle a falls as 1 / a. The limit for infinite angles therefore follows from a line through
