@@ -225,10 +225,12 @@ constexpr Row kMachiningRows[] = {
     {"machine", Text{"the name of a machine or a machine file"}, kNone,
      "Machine that cuts the prisms: the name of a shipped machine (`\"ideal\"`, `\"paper\"`, `\"thesis\"`), or a "
      "[machine file](machine_file.md), relative to the folder of the study. A name with an extension is a file. "
-     "Machining times are then those of the plan of `retrace fabricate`."},
+     "Machining times are then those of the plan of `retrace fabricate`.",
+     access<&Process::machine>},
     {"process", Text{"the name of a process or a process file"}, kNone,
      "Process that gives the values of the other keys unless they are given here: the name of a shipped process, or a "
-     "process file, relative to the folder of the study. A name with an extension is a file."},
+     "process file, relative to the folder of the study. A name with an extension is a file.",
+     access<&Process::process>},
     {"tool_width_mm", Number{kSane}, Computed{"the element's width"},
      "Width of the tool. An element wider than the tool needs several passes.", access_by<tool_width, set_tool_width>},
     {"clearance_um", Number{kSaneOrNone}, 200.0,

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <vector>
 
 #include "core/json_text.h"
 #include "core/message_text.h"
+#include "core/number_format.h"
 
 namespace retrace::studies {
 namespace {
@@ -70,12 +72,21 @@ std::vector<std::size_t> by_contribution(const std::vector<compute::SobolIndex>&
   return order;
 }
 
+/// Returns a mean with as many digits as its confidence interval allows, and half of the width of the interval.
+std::string mean_text(double mean, const compute::IntervalEstimate& interval) {
+  const double half = 0.5 * (interval.high - interval.low);
+  if (!(half > 0.0)) return fmt::format("{:.6g}", mean);
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9);
+  return fmt::format("{} +- {}", fixed(mean, digits), fixed(half, digits));
+}
+
 std::string quantity_text(const Study& study, const QuantityTolerance& quantity) {
   std::string text = quantity.quantity + ":";
   if (quantity.nominal) text += fmt::format("  nominal {:.6g}", *quantity.nominal);
   if (quantity.spread)
-    text += fmt::format("  mean {:.6g}  standard deviation {:.3g}  range {:.6g} to {:.6g}", quantity.spread->mean,
-                        quantity.spread->deviation, quantity.spread->min, quantity.spread->max);
+    text += fmt::format("  mean {}  standard deviation {:.3g}  range {:.6g} to {:.6g}",
+                        mean_text(quantity.spread->mean, quantity.spread->mean_interval), quantity.spread->deviation,
+                        quantity.spread->min, quantity.spread->max);
   text += "\n";
   if (!quantity.percentiles.empty()) {
     text += " ";
