@@ -271,10 +271,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   const double empty_mm2 = kEmptyArea * part_.size_mm * part_.size_mm;
   const Bounds bounds = bounds_of(*plane, to_source, near);
   const FlatPolygon lit_cell = bounds.lit(bounds.cell());
-  if (lit_cell.size() < 3 || raytrace::area(lit_cell) <= empty_mm2) {
-    scene->is_lit = false;
-    return scene;
-  }
+  scene->is_lit = lit_cell.size() >= 3 && raytrace::area(lit_cell) > empty_mm2;
+  if (!scene->is_lit) return scene;
   const Vec3 direction = refracted_inside(plane->surface_slope, to_source, index);
   const Vec3 inside = scene->direction(direction);
   const double rim_mm = rim_height(own.corners_mm, direction);
@@ -288,7 +286,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   // lets in covers a smaller area.
   const Bounds model_bounds = bounds.before(*displacement);
   const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
-  if (portion.size() < 3) return nullptr;
+  scene->is_lit = portion.size() >= 3;
+  if (!scene->is_lit) return scene;
   // Light that meets the element first enters within the shadows of the element and of its mirror images. Light between
   // the shadows meets other elements first, and the tracer ignores it (ExcerptLight).
   const double height_mm = plane->point_mm.z() - own.lower_mm.z();

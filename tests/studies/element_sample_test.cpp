@@ -55,7 +55,8 @@ SampledSum estimate(const ElementSample& sample, const Reading& reading) {
 }
 
 double smooth(std::size_t element, std::size_t wavelength) {
-  const auto& at = portions()[element].at_mm;
+  static const std::vector<ElementPortion> all = portions();
+  const auto& at = all[element].at_mm;
   const double x = at.x() / 70.0, y = at.y() / 40.0, u = static_cast<double>(wavelength) / 5.0;
   return 1.0 + 0.6 * x - 0.4 * y + 0.5 * x * x - 0.3 * x * y + 0.2 * u;
 }
