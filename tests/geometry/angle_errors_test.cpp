@@ -100,7 +100,7 @@ TEST(AngleErrors, FacetTiltOpensOneFacetOfACubeCorner) {
 
 TEST(AngleErrors, ApexOfACubeCornerStaysInPlace) {
   for (const AngleErrors& errors : kErrors) {
-    for (const Element element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
+    for (const Element& element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
       const Part part = build_part(single(element, errors));
       EXPECT_EQ(part.element_depth_mm, element_depth_mm(element));
       for (const CellFacet& facet : element_cell(element, errors).facets)
@@ -171,7 +171,7 @@ TEST(AngleErrors, TurnedPrismsCarryTheirErrorsWithThem) {
 
 TEST(AngleErrors, SurfaceLiesBetweenDepthAndTop) {
   for (const AngleErrors& errors : kErrors) {
-    for (const Element element :
+    for (const Element& element :
          {Element(RtpElement{0.5, 0.4, 90.0}), Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
       const Part part = build_part(single(element, errors));
       double lowest = INFINITY;
@@ -189,7 +189,7 @@ TEST(AngleErrors, SurfaceLiesBetweenDepthAndTop) {
 
 TEST(AngleErrors, SingleElementsAreClosed) {
   for (const AngleErrors& errors : kErrors)
-    for (const Element element :
+    for (const Element& element :
          {Element(RtpElement{0.45, 0.4, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})})
       expect_valid(single(element, errors));
 }
@@ -229,7 +229,7 @@ PartSpec cube_array(const Element& element, const AngleErrors& errors) {
 TEST(AngleErrors, CubeCornerArraysAreClosed) {
   for (const AngleErrors& errors : kErrors) {
     for (const PartialElements partial : {PartialElements::cut, PartialElements::omit}) {
-      for (const Element element : {Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
+      for (const Element& element : {Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
         const bool may_touch = std::holds_alternative<TriangularCube>(element) &&
                                !(alike(errors.dihedral_error_arcmin) && alike(errors.facet_tilt_arcmin));
         if (may_touch) continue;

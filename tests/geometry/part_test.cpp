@@ -34,7 +34,7 @@ TEST(Part, SingleElementsAreClosed) {
   PartSpec spec;
   spec.array.arrangement = Arrangement::single;
   spec.thickness_mm = 0.5;
-  for (const Element element :
+  for (const Element& element :
        {Element(RtpElement{0.45, 0.45, 90.0}), Element(HexagonalCube{1.6}), Element(TriangularCube{1.6})}) {
     spec.element = element;
     expect_valid(spec);
@@ -73,7 +73,7 @@ TEST(Part, CubeCornerArraysAreClosed) {
 }
 
 TEST(Part, FacetsAreAtTheRightAngles) {
-  for (const Element element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
+  for (const Element& element : {Element(HexagonalCube{1.3}), Element(TriangularCube{1.3})}) {
     PartSpec spec;
     spec.element = element;
     spec.array.arrangement = Arrangement::single;

@@ -80,7 +80,7 @@ TEST(SobolSquare, ScramblesAreUnbiased) {
 
 // Equal areas of the entrance face contain equal fractions of the points.
 TEST(EntranceSampler, IsEvenOverTheFace) {
-  for (const Element element :
+  for (const Element& element :
        {Element(RtpElement{0.7, 0.4, 90.0}), Element(HexagonalCube{1.0}), Element(TriangularCube{1.0})}) {
     const Part part = build_part(single(element, 0.5));
     const EntranceSampler sampler(part);
