@@ -188,7 +188,7 @@ constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_a
 constexpr Condition kArcsecOfCube[] = {
     is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
     is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
-    is_absent("dihedral_error_arcmin", "not allowed together with dihedral_error_arcmin")};
+    is_absent("surface.dihedral_error_arcmin", "not allowed together with dihedral_error_arcmin")};
 constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh)};
 constexpr Condition kModelOfMap[] = {is_given("height_map")};
 constexpr Condition kModelOfOthers[] = {is_absent("height_map")};

@@ -36,7 +36,7 @@ constexpr Condition kCantOnly[] = {kElementOfNoBall,
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
-                                         is_absent("length_mm", "not allowed together with length_mm")};
+                                         is_absent("element.length_mm", "not allowed together with length_mm")};
 
 constexpr Row kElementRows[] = {
     {"kind", Word{geometry::kElementKinds}, kRequired,
