@@ -31,8 +31,8 @@ fabrication::Job job_of_process(const design::Design& design, const geometry::Rt
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
-  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead. With a large
-  // limit, the plan contains the length of cut.
+  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead. With a
+  // large limit, the plan contains the length of cut.
   if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
