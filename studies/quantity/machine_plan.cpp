@@ -16,6 +16,8 @@ namespace {
 
 /// Maximum width of a chisel that a job allows.
 constexpr double kMaxToolWidthMm = 2.0;
+/// Maximum tool life that a job allows.
+constexpr double kMaxEdgeLifeMm = 1e9;
 /// Allowed excess of the tool's width over the element's width: one nanometre.
 constexpr double kExcessMm = 1e-6;
 
@@ -29,8 +31,9 @@ fabrication::Job job_of_process(const design::Design& design, const geometry::Rt
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
-  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead.
-  job.tool.edge_life_mm.reset();
+  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead. With a
+  // large limit, the plan contains the length of cut.
+  if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
 }

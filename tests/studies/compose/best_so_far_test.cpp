@@ -63,8 +63,15 @@ TEST(BestSoFar, AnInterruptedCompositionHasThePartOfTheFinishedCells) {
     // The next run continues with the stored cells, and its result is that of a run without interruption.
     const Study whole = lobes("", nullptr, nullptr, 0);
     compute::ResultStore fresh("", compose_layout(whole), compute::IfExists::refuse);
-    EXPECT_EQ(composition_json(whole, request, compose(whole, request, store, nullptr, nullptr), 0.0),
-              composition_json(whole, request, compose(whole, request, fresh, nullptr, nullptr), 0.0));
+    const Composition resumed = compose(whole, request, store, nullptr, nullptr);
+    const Composition expected = compose(whole, request, fresh, nullptr, nullptr);
+    EXPECT_TRUE(resumed.complete);
+    EXPECT_EQ(resumed.evaluations, expected.evaluations);
+    ASSERT_EQ(resumed.best->zones.size(), expected.best->zones.size());
+    for (std::size_t zone = 0; zone < expected.best->zones.size(); ++zone) {
+      EXPECT_EQ(resumed.best->zones[zone].cell.point, expected.best->zones[zone].cell.point);
+      EXPECT_NEAR(resumed.best->zones[zone].area_fraction, expected.best->zones[zone].area_fraction, 1e-9);
+    }
   }
 }
 
