@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arguments import thread_count
+from ._arguments import Numbers, PathLike, thread_count
 from ._design import AnyDesign, design_of
 from ._fields import FIELDS
 from ._progress import Progress, teller

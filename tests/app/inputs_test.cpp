@@ -206,6 +206,7 @@ Arguments command_of(const std::string& text, const std::string& file) {
   const auto has = [&](const char* what) { return text.find(what) != std::string::npos; };
   if (has("retrace.turned_part/")) return {"turn", file};
   if (has("retrace.planed_part/")) return {"plane", file};
+  if (has("retrace.cubes/")) return {"ranging", "round_cube.toml", "--cubes", file};
   if (!has("[[parameter]]")) return {"inspect", file};
   for (const std::string command : {"optimize", "tolerance", "compose"})
     if (text.find("[" + command + "]") != std::string::npos) return {command, file};

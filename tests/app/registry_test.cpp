@@ -151,7 +151,7 @@ TEST_P(Completion, KnowsWhatMayStandForAValue) {
       {"retrace list ", {"machines", "materials", "processes", "requests", "standards"}, true},
       // `list` is a file here.
       {"retrace --json list schema ",
-       {"design", "job", "machine", "materials", "planed_part", "process", "study", "turned_part"},
+       {"cubes", "design", "job", "machine", "materials", "planed_part", "process", "study", "turned_part"},
        true},
       {"retrace report ", {"results"}, true},
       {"retrace rre a.toml -o ", {"results"}, true},

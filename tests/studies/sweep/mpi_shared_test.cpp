@@ -139,14 +139,14 @@ const std::string kOptimum =
 
 TEST_F(CommandsByMpi, OptimizeIsTheSame) {
   folder_.write("study.toml", kOptimum);
-  expect_same_by_ranks("optimize study.toml", 2);
+  expect_same_by_ranks("optimize study.toml", 8);
   // A single process can resume from a store that ranks have written, and ranks can resume from the store of a single
   // process.
   run_alone("optimize study.toml --quiet --resume -o three");
-  expect_same_files("alone", "three", 2);
+  expect_same_files("alone", "three", 8);
   const auto points = stored_points(folder_.path() / "alone/optimum.sqlite").size();
   run(on_ranks(3, "optimize study.toml --quiet --resume -o alone"));
-  expect_same_files("alone", "three", 2);
+  expect_same_files("alone", "three", 8);
   EXPECT_EQ(stored_points(folder_.path() / "alone/optimum.sqlite").size(), points);
 }
 
