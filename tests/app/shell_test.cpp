@@ -187,7 +187,7 @@ TEST_F(Shell, OthersRefuseThem) {
   EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
     EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", option, "-o", "out"}), where);
-  for (const char* kind : {"--detector", "--camera", "--road"})
+  for (const char* kind : {"--detector", "--road"})
     EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
   EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
   EXPECT_EQ(refusal(design, {"explore", "design.toml", "-o", "out.html"}), where);
