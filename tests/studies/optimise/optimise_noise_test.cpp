@@ -348,11 +348,12 @@ TEST(MachinePlan, ToolLifeIsComparedWithThePathInOneElement) {
   };
   ASSERT_TRUE(value("edge_life_margin_mm").has_value());
   const double path_mm = 50.0 - *value("edge_life_margin_mm");
-  // The roughing cuts of a facet of length L plunge by 15 um, 30 um, ... and plough 0.1 mm each. Two finishing cuts
-  // plunge along each facet.
+  // The roughing cuts of a facet of length L plunge by 15 um, 30 um, ... and plough 0.1 mm each, or up to the face of
+  // the blank. Two finishing cuts plunge along each facet.
   const double facet_mm = 0.4 / std::numbers::sqrt2;
   double expected_mm = 4.0 * facet_mm;
-  for (double depth_mm = facet_mm - 0.010; depth_mm > 1e-9; depth_mm -= 0.015) expected_mm += depth_mm + 0.1;
+  for (double depth_mm = facet_mm - 0.010; depth_mm > 1e-9; depth_mm -= 0.015)
+    expected_mm += depth_mm + std::min(0.1, depth_mm);
   EXPECT_NEAR(path_mm, expected_mm, 0.1 * expected_mm);
 }
 
