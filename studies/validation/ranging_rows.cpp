@@ -31,15 +31,14 @@ constexpr double kLageosMm = 38.1;
 constexpr double kUradPerRad = 1e6;
 constexpr double kArcsecOfUrad = 1e-6 * 3600.0 / closed_forms::kDeg;
 
-/// Returns a design of a hexagonal cube corner whose entrance face has the area of a circle.
+/// Returns a design of a cube corner with a circular face.
 /// \param body keys of the table [body]
 /// \param further further tables of the design
-design::Design cube_of_area(double diameter_mm, const std::string& body, const std::string& further = {}) {
-  const double aperture_mm = diameter_mm * std::sqrt(std::numbers::pi / (1.5 * std::numbers::sqrt3));
+design::Design cube_of(double diameter_mm, const std::string& body, const std::string& further = {}) {
   return design::parse_design(
-      fmt::format("schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = {}\n[array]\n"
-                  "arrangement = \"single\"\n[body]\nthickness_mm = 0.5\n{}\n[light]\nwavelength_nm = {}\n{}",
-                  aperture_mm, body, kGreenNm, further),
+      fmt::format("schema = \"retrace.design/1\"\n[element]\nkind = \"round_icc\"\ndiameter_mm = {}\n[body]\n{}\n"
+                  "[light]\nwavelength_nm = {}\n{}",
+                  diameter_mm, body, kGreenNm, further),
       "cube.toml");
 }
 
@@ -50,7 +49,7 @@ RangingResult ranging_of(const design::Design& design, RangingRequest request, c
 
 /// Returns the cross section exactly towards the source, relative to that of a plane mirror with the same area.
 double relative_peak(const char* further, const Cancellation* cancel) {
-  const RangingResult result = ranging_of(cube_of_area(kLageosMm, kSilicaBody, further), {}, cancel);
+  const RangingResult result = ranging_of(cube_of(kLageosMm, kSilicaBody, further), {}, cancel);
   return result.points.empty() ? 0.0 : result.points.front().centre.total / result.points.front().mirror_m2;
 }
 
@@ -64,7 +63,7 @@ double mean_on(const design::Design& design, double inner_urad, double outer_ura
 
 /// Returns the cross section of a round mirror in a direction, in m2. The mirror is a polygon with 2000 corners.
 double disc_cross_section(double diameter_mm, double urad) {
-  const geometry::Part part = design::part_of_design(cube_of_area(diameter_mm, kSilicaBody), nullptr);
+  const geometry::Part part = design::part_of_design(cube_of(diameter_mm, kSilicaBody), nullptr);
   raytrace::FarFieldPolicy policy;
   policy.wavelength_nm = kGreenNm;
   raytrace::FarFieldCollector collector(part, {}, policy);
@@ -123,9 +122,9 @@ std::vector<ValidationRow> ranging_validation() {
        .expected = 0.5,
        .source = kArnold,
        .allowed = 0.1,
-       .why = "\"about 0.5\"; no wavelength and no index are given; a hexagon with the area of the circle",
+       .why = "\"about 0.5\"; no wavelength and no index are given",
        .compute = [](auto cancel) {
-         return 1e-6 * mean_on(cube_of_area(25.4, "material = \"fused-silica\""), 32.0, 40.0, cancel);
+         return 1e-6 * mean_on(cube_of(25.4, "material = \"fused-silica\""), 32.0, 40.0, cancel);
        }});
   add({.quantity = "LAGEOS, orbit at 5,900 km: largest velocity aberration",
        .unit = "microrad",

@@ -374,7 +374,7 @@ TEST(Library, SurfacesAreMeasuredFromFilesAndMemory) {
 }
 
 TEST(Library, CubeCornersAreRanged) {
-  const Design cube = Design::load(example("ranging/satellite_cube.toml"));
+  const Design cube = Design::load(example("round_cube.toml"));
   RangingRequest request;
   request.cubes = example("ranging/sphere.toml");
   request.incidence_deg = {30.0};

@@ -133,7 +133,7 @@ class Equality(unittest.TestCase):
         )
 
     def test_ranging(self):
-        file = program.example("ranging/satellite_cube.toml")
+        file = program.example("round_cube.toml")
         cubes = program.example("ranging/sphere.toml")
         self.assertEqual(
             program.answer(rt.ranging, file, wavelength_nm=[532, 1064], orbit_km=5860),

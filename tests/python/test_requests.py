@@ -13,7 +13,7 @@ from retrace import _core
 from retrace._fields import FIELDS
 
 BRICK = str(program.EXAMPLES / "rtp_brick_2mm.toml")
-CUBE = str(program.EXAMPLES / "ranging/satellite_cube.toml")
+CUBE = str(program.EXAMPLES / "round_cube.toml")
 RAYS = ["rays", BRICK, "--emitter=lambertian"]
 HEIGHTS = str(program.EXAMPLES / "facet_height_map.txt")
 STUDY = str(program.EXAMPLES / "studies/element_base.toml")

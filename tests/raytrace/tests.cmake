@@ -49,6 +49,6 @@ retrace_test(raytrace_tests
 retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/entrance_test.cpp
   LIBRARIES retrace::raytrace)
-retrace_test(round_cube_tests
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/round_cube_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/reference_tracer.cpp
   LIBRARIES retrace::raytrace retrace::geometry_check Boost::headers)

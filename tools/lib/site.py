@@ -247,7 +247,7 @@ def question(file, text):
         design = value_of(text, "design") or re.search(r'key = "design"\nvalues = \["([^"]*)"', text).group(1)
         return ["inspect", (file.parent / design).resolve()], ["view.png", "entrance_surface.svg", "plan.svg"]
     if schema == "retrace.cubes/1":
-        cube = file.parent / "satellite_cube.toml"
+        cube = file.parent.parent / "round_cube.toml"
         return ["ranging", cube, "--cubes", file, "--map-points", 41], ["map.png"]
     if schema.startswith("retrace.turn"):
         return ["turn", file], ["maps.png", "profile.svg"]

@@ -8,6 +8,6 @@ retrace_test(raytrace_tests
           ${CMAKE_CURRENT_LIST_DIR}/scattered_limits_test.cpp
   LIBRARIES retrace::raytrace retrace::texture retrace::geometry_io rapidcheck)
 # Tests of light behind curved entrance surfaces. They are a separate program, because they trace many elements.
-retrace_test(element_light_tests
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/lens_wave_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_io)
