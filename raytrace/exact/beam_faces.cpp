@@ -234,9 +234,9 @@ bool is_traced(const BeamStep& step, const CellInstance& cell) {
   const ExcerptLight* const excerpt = step.scene.policy.excerpt;
   if (excerpt == nullptr) return true;
   const Beam& from = step.beam;
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& corner : from.corners) middle += corner / static_cast<double>(from.corners.size());
-  return excerpt->is_own(from.entry.of(middle), cell);
+  geometry::Polygon entered;
+  for (const Vec3& corner : from.corners) entered.push_back(from.entry.of(corner));
+  return excerpt->is_own(geometry::centroid(entered), cell);
 }
 
 }  // namespace

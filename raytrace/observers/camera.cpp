@@ -346,12 +346,12 @@ struct CameraTracer::Impl::Block {
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
-    const double reflected_before = tally.other[Account::shell_reflected];
+    const double shells_before = stopped_at_shells();
     PathWalker& walker = walkers[wavelength];
     accumulator.begin(start.owner);
     const bool meets_part = walker.launch(start.position, start.ray, key, replicate, sample);
     accumulator.on_transmission(start.owner, meets_part ? behind() - before : start.ray.light.power());
-    accumulator.on_shell_reflection(start.owner, tally.other[Account::shell_reflected] - reflected_before);
+    accumulator.on_shell_loss(start.owner, stopped_at_shells() - shells_before);
     if (!meets_part) return false;
     Contact& contact = paths[start.owner].contact;
     if (walker.arrival() == PathWalker::Arrival::entrance) contact.kind = Contact::Kind::face;
@@ -359,6 +359,11 @@ struct CameraTracer::Impl::Block {
     return true;
   }
 
+  /// Returns the power that shells have reflected so far, and the power that has left the part and missed a shell. The
+  /// walker does not trace this light further.
+  double stopped_at_shells() const {
+    return tally.other[Account::shell_reflected] + tally.other[Account::returned_elsewhere];
+  }
   /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 

@@ -28,7 +28,7 @@ void SensorAccumulator::on_front_reflection(std::uint32_t owner, const Vec3& fro
     path.luminance += power * luminaire_.luminance(from, path.contact.world_from_local * direction);
 }
 
-void SensorAccumulator::on_shell_reflection(std::uint32_t owner, double power) {
+void SensorAccumulator::on_shell_loss(std::uint32_t owner, double power) {
   paths_[owner].luminance += scene_.surroundings.entrance_side * power;
 }
 

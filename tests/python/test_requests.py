@@ -68,7 +68,11 @@ CALLS = {
         ["verify", JOB, PROGRAM],
     ),
     "study": (partial(rt.sweep, STUDY), _core.StudyRequest, None),
-    "ranging": (partial(rt.ranging, CUBE), _core.RangingRequest, ["ranging", CUBE]),
+    "ranging": (
+        partial(rt.ranging, CUBE, polarisation="linear"),
+        _core.RangingRequest,
+        ["ranging", CUBE, "--polarisation=linear"],
+    ),
     "rays": (partial(rt.rays, BRICK, emitter="lambertian"), _core.RaysRequest, RAYS),
     "trace": (partial(rt.trace, BRICK, [[0, 0, 5]], [[0, 0, -1]]), _core.TraceRequest, None),
 }
