@@ -239,7 +239,9 @@ TEST_P(LensPower, AgreesWithRaysInEachAccount) {
   const double at_sides = 1.0 / lens.radius_mm;
   EXPECT_NEAR(beams.within_cone, ledger[Account::retroreflected], 5e-4 + 0.8 * at_sides + noise);
   EXPECT_LT(beams.truncated, 2.5e-3);
-  if (lens.is_lossless) EXPECT_NEAR(beams.sum(), 1.0, lens.incidence_deg == 0.0 ? 1e-3 : 5e-3);
+  if (lens.is_lossless) {
+    EXPECT_NEAR(beams.sum(), 1.0, lens.incidence_deg == 0.0 ? 1e-3 : 5e-3);
+  }
   if (lens.incidence_deg > 0.0) return;
   EXPECT_NEAR(beams.elsewhere + beams.truncated, ledger[Account::returned_elsewhere] + ledger[Account::truncated],
               1e-3 + noise);
