@@ -34,8 +34,8 @@ double PathWalker::reach_entrance_face(const State& state, double limit, Step& s
 /// Traces a path in the air above the curved entrance face. It enters the part again or leaves. The outline of the part
 /// is convex, so that light that leaves the space above it does not come back.
 bool PathWalker::advance_above(State& state) {
-  const auto met = setup_.entrance_face->first_hit({state.position, state.direction, state.entrance_source, false,
-                                                    std::numeric_limits<double>::infinity()});
+  const auto met = setup_.entrance_face->first_hit(
+      {state.position, state.direction, state.entrance_source, false, std::numeric_limits<double>::infinity()});
   if (!met) return leave_entrance_face(state);
   if (!setup_.is_far_from_sides(state.position + met->hit.t * state.direction)) {
     Step unused;

@@ -33,9 +33,9 @@ struct PathSetup : LightSetup {
   std::optional<LitRegion> lit_region;  ///< region of the incident beam; set if shells deflect light
   double middle_height_mm = 0.0;        ///< height of the entrance surface at the middle of the part, see Shell
   PathPolicy policy;
-  Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
-  double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
-  Vec2 period_mm = Vec2::Zero();     ///< period of an infinite part
+  Vec2 centre_mm = Vec2::Zero();  ///< origin of positions, in the part frame
+  double clearance_mm = 0.0;      ///< maximum z at which the back surface is searched
+  Vec2 period_mm = Vec2::Zero();  ///< period of an infinite part
   /// Half size of a rectangle around the origin that is inside all sides of a finite part.
   Vec2 inner_half_mm = Vec2::Zero();
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
