@@ -180,7 +180,7 @@ Command optimize_command() {
           "3 if no design is feasible and some were not evaluated because the memory or beam budget ran out. With "
           "`--job` the fabrication job of the chosen design is written, with the options of `job`.",
       .reads = {"retrace.study/1", "retrace.design/1"},
-      .writes = {"retrace.optimum/1", "retrace.job/1"},
+      .writes = {"retrace.optimum/1", "retrace.design/1", "retrace.job/1"},
       .begin = begins<OptimizeOptions>(arguments, run)};
 }
 

@@ -49,6 +49,7 @@ TEST(OptimizeStop, AnInterruptWritesTheBestSoFar) {
   const Outcome outcome = child.wait(patient(60));
   if (outcome.code == 0) return;  // the run was faster than the interrupt
   EXPECT_EQ(outcome.code, 130);
+  ASSERT_TRUE(fs::exists(folder.path() / "out/best.toml"));
   expect_valid_best(folder);
   // On a busy machine, the program can miss its deadline after an interrupt. The store and the best design remain.
   if (!fs::exists(folder.path() / "out/optimum.json")) return;
