@@ -24,16 +24,22 @@ namespace {
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes, studies::CubeCorner, studies::DirectionField;
 
 std::string design_of(const SectorCube& cube) {
-  std::string text = fmt::format(
-      "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = {}\n[array]\narrangement = "
-      "\"single\"\n[body]\nrefractive_index = {}\nthickness_mm = {}\n[surface]\nwalls = \"absorbing\"\n"
-      "dihedral_error_arcmin = [{}, {}, {}]\n[light]\nwavelength_nm = {}\n",
-      cube.aperture_mm, cube.index, cube.thickness_mm, cube.errors_arcsec[0] / 60.0, cube.errors_arcsec[1] / 60.0,
-      cube.errors_arcsec[2] / 60.0, cube.wavelength_nm);
+  std::string text = "schema = \"retrace.design/1\"\n[element]\n";
+  if (cube.is_round)
+    text += fmt::format(
+        "kind = \"round_icc\"\ndiameter_mm = {}\nlength_mm = {}\nrecess_mm = {}\n[body]\nrefractive_index = {}\n",
+        cube.aperture_mm, cube.aperture_mm / std::numbers::sqrt2 + cube.thickness_mm, cube.recess_mm, cube.index);
+  else
+    text += fmt::format(
+        "kind = \"hexagonal_icc\"\naperture_mm = {}\n[array]\narrangement = \"single\"\n[body]\nrefractive_index = {}\n"
+        "thickness_mm = {}\n",
+        cube.aperture_mm, cube.index, cube.thickness_mm);
+  text += fmt::format(
+      "[surface]\nwalls = \"absorbing\"\ndihedral_error_arcsec = [{}, {}, {}]\n[light]\nwavelength_nm = {}\n",
+      cube.errors_arcsec[0], cube.errors_arcsec[1], cube.errors_arcsec[2], cube.wavelength_nm);
   if (cube.metal)
     text += fmt::format("[coating]\nfacets = [{{ refractive_index = {}, extinction_coefficient = {} }}]\n",
                         cube.metal->real(), cube.metal->imag());
-  if (cube.radius_mm) text += fmt::format("[outline]\ncircle_mm = [0, 0, {}]\n", *cube.radius_mm);
   return text;
 }
 
@@ -58,7 +64,8 @@ std::vector<Vec3> directions_around(const Vec3& to_source, const std::vector<dou
   return directions;
 }
 
-/// Random cubes: coated or not, with errors up to 3 arcsec and incidences up to 40 degrees.
+/// Random cubes with circular and hexagonal faces: coated or not, with errors up to 3 arcsec, recesses of up to 3 mm
+/// and incidences up to 40 degrees.
 std::vector<SectorCube> random_cubes(int count) {
   std::mt19937 random(66);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -72,6 +79,8 @@ std::vector<SectorCube> random_cubes(int count) {
     if (k % 2 == 1) cube.metal = {0.5 + unit(random), 5.0 + 2.0 * unit(random)};
     cube.incidence_deg = 40.0 * unit(random);
     cube.azimuth_deg = 360.0 * unit(random);
+    cube.is_round = k % 4 < 2;
+    if (cube.is_round) cube.recess_mm = 3.0 * unit(random);
     cubes.push_back(cube);
   }
   return cubes;

@@ -18,7 +18,7 @@ namespace retrace::testing {
 
 /// Data of a cube of the sector model.
 struct SectorCube {
-  double aperture_mm = 38.1;  ///< diameter of the circle around the hexagon
+  double aperture_mm = 38.1;  ///< diameter of the circular face, or of the circle around the hexagonal face
   double thickness_mm = 0.1;
   double index = 1.46;
   double wavelength_nm = 532.0;
@@ -26,7 +26,8 @@ struct SectorCube {
   std::optional<std::complex<double>> metal = {};  ///< complex index of an opaque coating; none: no coating
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  std::optional<double> radius_mm = {};  ///< radius of a circular outline; none: the hexagon
+  bool is_round = false;   ///< true for a circular face, false for a hexagonal one
+  double recess_mm = 0.0;  ///< depth of a circular face in its mount
 };
 
 /// Far field of the sector model on a square grid of direction cosines around the direction to the source.
@@ -133,7 +134,7 @@ class SectorModel {
   }
 
   bool is_in_outline(const Vec2& p) const {
-    if (cube_.radius_mm && p.norm() > *cube_.radius_mm) return false;
+    if (cube_.is_round) return p.norm() <= 0.5 * cube_.aperture_mm;
     for (int k = 0; k < 6; ++k) {
       const double a = (60.0 * k + 30.0) * std::numbers::pi / 180.0;
       if (p.x() * std::cos(a) + p.y() * std::sin(a) > edge_ / std::numbers::sqrt2) return false;
@@ -141,9 +142,15 @@ class SectorModel {
     return true;
   }
 
-  /// Returns the order in which light that enters at a point meets the facets, or nothing if it meets a side.
+  /// Returns true if light that enters or leaves at a point of the face passes the edge of the mount.
+  bool passes_mount(const Vec2& at) const {
+    return is_in_outline(at + cube_.recess_mm / to_source_.z() * to_source_.head<2>());
+  }
+
+  /// Returns the order in which light that enters at a point meets the facets. Returns nothing if it meets a side or
+  /// the mount.
   std::optional<Order> order_of(const Vec2& at) const {
-    if (!is_in_outline(at)) return std::nullopt;
+    if (!is_in_outline(at) || !passes_mount(at)) return std::nullopt;
     Vec3 p(at.x(), at.y(), cube_.thickness_mm);
     Vec3 d = inside_direction();
     Order order{};
@@ -168,7 +175,7 @@ class SectorModel {
       order[bounce] = facet;
     }
     p += (cube_.thickness_mm - p.z()) / d.z() * d;
-    if (!is_in_outline(p.head<2>())) return std::nullopt;
+    if (!is_in_outline(p.head<2>()) || !passes_mount(p.head<2>())) return std::nullopt;
     return order;
   }
 
