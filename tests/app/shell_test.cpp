@@ -180,6 +180,26 @@ TEST_F(Shell, RaysPassThem) {
   EXPECT_GT(behind["ledger"]["shell_reflected"].get<double>(), 0.1);
 }
 
+// The light of the lamp crosses the four surfaces of the plate on its way to the part and back.
+TEST_F(Shell, CameraSeesThePartThroughThem) {
+  const Arguments camera = {"image",          "design.toml", "--camera", "--observation-deg=0", "--no-diffraction",
+                            "--pixels=40x30", "--passes=16"};
+  const Json bare = run(kCubes, camera);
+  const Json behind = run(kCubes + kPlate, camera);
+  const double expected = std::pow(0.96, 4.0) * bare["part_luminance_cd_per_m2"].get<double>();
+  const double error =
+      std::hypot(bare["part_std_error_cd_per_m2"].get<double>(), behind["part_std_error_cd_per_m2"].get<double>());
+  EXPECT_LT(error, 0.02 * expected);
+  EXPECT_NEAR(behind["part_luminance_cd_per_m2"].get<double>(), expected, 4.0 * error);
+  folder_.write("design.toml", kCubes + kPlate);
+  const Outcome outcome =
+      retrace(folder_, {"image", "design.toml", "--camera", "--observation-deg=0", "--pixels=8x6", "--passes=2"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;  // the picture has no diffraction
+  EXPECT_EQ(refusal(kEndless + kPlate, {"image", "design.toml", "--camera", "-o", "out"}),
+            "design.toml:5: array.extent");
+}
+
 TEST_F(Shell, OthersRefuseThem) {
   const std::string design = kCubes + kPlate;
   const std::string where = "design.toml:11: shell[1]";
