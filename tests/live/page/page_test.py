@@ -231,7 +231,8 @@ class PageWorks(LiveCase):
                     "r.dispatchEvent(new Event('input'))")
         self.wait(lambda d: "base_mm = 0.7" in self.session("base.toml"))
         self.assertEqual(self.session("base.toml"), ODD.replace("0.50", "0.7"))
-        self.script("document.querySelector(\"[data-key='element.kind'] input[value='hexagonal_icc']\").click()")
+        self.script("const s = document.querySelector(\"[data-key='element.kind'] select\"); s.value = 'hexagonal_icc'; "
+                    "s.dispatchEvent(new Event('change'))")
         self.wait(lambda d: self.all("#key-element-aperture_mm"))
         self.assertFalse(self.all("#key-element-base_mm"))
 
