@@ -94,7 +94,8 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
 }
 
 /// Returns the number of copies of `group` that together have the power of `other`. Both groups have the same shape,
-/// but resampled beams may have any power. The number is therefore not always an integer.
+/// but light that the entrance face has reflected on its way, or a resampled beam, may have any power. The number is
+/// therefore not always an integer.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
 }
@@ -355,7 +356,8 @@ CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, con
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
-  std::map<BeamsOfCell, std::vector<std::size_t>> known_cells;
+  // Groups of each distinct cell, and the numbers of their copies that have the power of one cell.
+  std::map<BeamsOfCell, std::vector<std::pair<std::size_t, double>>> known_cells;
   // All copies of a cell use the centroid of the first copy as the origin, so that equal fields have equal keys.
   std::optional<std::uint64_t> cell;
   Vec2 middle = Vec2::Zero();
@@ -366,17 +368,20 @@ std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
     if (!is_alone) cell = place.cell;
     const auto [same, is_first] = known_cells.try_emplace(pieces);
     if (!is_first) {
-      for (const std::size_t group : same->second) groups[group].copies += 1.0;
+      for (const auto& [group, copies] : same->second) groups[group].copies += copies;
       continue;
     }
     for (CoherentGroup& group : groups_of(pieces, is_alone ? centroid_of(pieces) : middle)) {
       if (group.polygons.empty()) continue;
       const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
-      same->second.push_back(it->second);
-      if (is_new)
+      if (is_new) {
+        same->second.emplace_back(it->second, 1.0);
         groups.push_back(std::move(group));
-      else
-        groups[it->second].copies += group.replicate ? copies_in(groups[it->second], group) : group.copies;
+      } else {
+        const double copies = copies_in(groups[it->second], group);
+        same->second.emplace_back(it->second, copies);
+        groups[it->second].copies += copies;
+      }
     }
   }
   return groups;

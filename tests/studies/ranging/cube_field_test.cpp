@@ -131,6 +131,28 @@ double power_within(const studies::CubeField& field, double radius, double step)
   return sum * step * step / (4.0 * std::numbers::pi * 1e-6 * field.beam_mm2());
 }
 
+/// Mirrors return all light that crosses the entrance face. The face reflects the fraction R of it back to the mirrors
+/// each time, so that the returned power is T^2 (1 + R + R^2 + ...) with all reflections. Light that returns one, three
+/// or more times has the same shape, and only the powers differ.
+TEST(CubeField, PowerOfMirrorsBehindAFaceIsAGeometricSeries) {
+  for (const double index : {1.1, 1.2, 1.3, 1.4, 1.4607, 1.5, 1.7, 1.9, 2.0, 2.3, 3.0})
+    for (const bool is_round : {true, false}) {
+      SectorCube cube;
+      cube.index = index;
+      cube.is_round = is_round;
+      const double r = std::pow((index - 1.0) / (index + 1.0), 2.0);
+      const std::string text = design_of(cube) + "[idealisation]\nfacets = \"mirror\"\n";
+      for (const bool with_reflections : {false, true}) {
+        const CubeCorner corner(design::parse_design(text, "cube.toml"), {}, with_reflections);
+        const studies::CubeField field = corner.field(Vec3::UnitZ(), 0, nullptr);
+        const double odd = std::pow(1.0 - r, 2.0) / (1.0 - r * r);
+        const double all = r + (1.0 - r);  // the first reflection at the face, and all light that enters
+        EXPECT_NEAR(field.diffracted_power() + field.undiffracted_power(), with_reflections ? all : odd, 2e-6)
+            << index << ' ' << is_round;
+      }
+    }
+}
+
 /// Sectors do not overlap. The integral of the Stokes parameters over the far field is therefore the sum over all
 /// beams, which the tracer computes without fields.
 TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
