@@ -17,7 +17,7 @@ bool has_elements(const schema::Document& document);
 inline constexpr std::string_view kDihedralErrorArcmin = "surface.dihedral_error_arcmin";
 inline constexpr std::string_view kDihedralErrorArcsec = "surface.dihedral_error_arcsec";
 
-/// Returns the minimum thickness of the plate, which covers the highest points of the elements.
+/// Returns the minimum thickness of the plate. A plate of this thickness covers the highest points of the elements.
 double min_thickness_mm(const geometry::PartSpec& part);
 
 /// Reads the elements and the array of a design, without errors, edges and base.

@@ -25,7 +25,7 @@ struct PartElement {
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
 std::vector<PartElement> part_elements(const Part& part);
 
-/// Kind of a cell in an excerpt: a cell of the element, of another element, of flat land, or a side of the original
+/// Kind of a cell in an excerpt: a cell of the element, a cell of another element, flat land, or a side of the original
 /// part.
 enum class ExcerptCell { own_element, other_element, land, side };
 

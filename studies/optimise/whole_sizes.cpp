@@ -11,7 +11,7 @@ namespace {
 
 /// Maximum deviation of the number of elements from a whole number. The layout of arrays uses the same tolerance.
 constexpr double kWhole = 1e-9;
-/// Maximum number of sizes that between() returns.
+/// Maximum number of sizes for one length. A length with more sizes is ignored.
 constexpr double kMaxSizes = 1000.0;
 /// Smallest step between round values, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;

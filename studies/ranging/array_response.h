@@ -27,7 +27,7 @@ struct CubeEcho {
 /// Centroid and spread of the ranges of all cubes, weighted with their cross sections.
 struct RangeDistribution {
   double cross_section_m2 = 0.0;  ///< sum over all cubes
-  double centroid_mm = 0.0;       ///< mean range relative to the origin; negative if nearer to the station than the origin
+  double centroid_mm = 0.0;       ///< mean range relative to the origin; negative if nearer than the origin
   double rms_mm = 0.0;            ///< standard deviation of the ranges
   double nearest_mm = 0.0;        ///< range of the nearest cube that returns light
   double farthest_mm = 0.0;

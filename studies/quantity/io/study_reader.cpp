@@ -422,8 +422,8 @@ void link_edge_to_root(const Document& document, const std::string& text, PointT
   varied = design::parse_design(text, texts.design, texts.for_design);
 }
 
-/// Returns the settings for a level of accuracy. The target error is scaled. If the number of rays is given, the number
-/// is scaled instead.
+/// Returns the settings for a level of accuracy. The target error is multiplied by the scale. If the study gives the
+/// number of rays, this number is divided by the square of the scale instead.
 AnalysisSettings at_level(AnalysisSettings analysis, const std::optional<ErrorLevel>& level) {
   if (!level) return analysis;
   constexpr double max_target = 0.5;
