@@ -121,8 +121,8 @@ double sum_of_squares(const Position& x, const Position& centre, const Position&
 }
 
 double teeth(double x) {
-  // The value decreases with x. It jumps up where the number of elements in a part of the length 1 changes to another
-  // whole number.
+  // Fraction of a part of the length 1 that whole elements fill, as a function of their size. It has a peak at each
+  // size for which 1 / size is a whole number. The second term makes one peak the best.
   const double size = 0.02 + 0.08 * x;
   return std::floor(1.0 / size + 1e-9) * size - 2.0 * std::pow(x - 0.43, 2);
 }
