@@ -53,8 +53,8 @@ JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& c
 }
 
 /// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
-/// not given, it is the value of the key machining.tool_width_mm of the study. If [machining] names a machine, the tool
-/// and the process of the job are those of [machining].
+/// not given, it is the value of the key machining.tool_width_mm of the study. If [machining] names a machine, the job
+/// uses the tool and the process of [machining].
 studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {

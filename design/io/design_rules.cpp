@@ -136,8 +136,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes, and that a single element has
-/// no outline unless it is a round cube corner.
+/// Checks that a design with a curved entrance face has a convex outline without holes. Also checks that a single
+/// element has no outline, unless it is a round cube corner.
 void check_outline(const Document& document, const PartSpec& part) {
   if (has_outline(document) && part.array.arrangement == Arrangement::single &&
       !std::holds_alternative<RoundCube>(part.element))

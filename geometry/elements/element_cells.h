@@ -70,7 +70,7 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
 /// of its sides are parallel to the contour lines of the facets.
 Polygon polygon_of_circle(const Vec2& centre_mm, double diameter_mm);
 
-/// Returns a cube corner with a circular face and its apex below `centre_mm`.
+/// Returns a cube corner with a circular face. Its apex is below `centre_mm`.
 Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
 /// Returns one element that is not rotated. Its lower left corner (prism) or its apex (cube corner) is at the origin.

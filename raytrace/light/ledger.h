@@ -21,7 +21,7 @@ enum class Account : std::size_t {
   lost,       ///< missed every face although it was inside the part; 0 unless there is a defect
   /// reflected at surfaces of shells (separate lenses in front of the part), and not traced further; 0 without shells
   shell_reflected,
-  stopped  ///< stopped by the mount or by the chamfer of the face; 0 without them
+  stopped  ///< stopped by the mount or by the chamfer of the face; 0 if there is neither
 };
 
 inline constexpr std::size_t kAccountCount = 11;

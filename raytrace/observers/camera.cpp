@@ -341,9 +341,9 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path from a point outside of the part. This function is used for all paths if the entrance
-  /// face is curved or if there are shells, and for paths that do not meet the entrance face of a part with notches or
-  /// holes. Returns false if the light does not meet the part.
+  /// Traces the light of one path from a point outside of the part. If the entrance face is curved or if there are
+  /// shells, this function is used for all paths. Otherwise, it is used for paths that do not meet the entrance face of
+  /// a part with notches or holes. Returns false if the light does not meet the part.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();

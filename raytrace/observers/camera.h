@@ -79,9 +79,9 @@ struct WeightedOptics {
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// Result of one pass over a picture. It contains three values per pixel, row by row from the top: first the luminances
-/// of all pixels (cd/m^2), then the fractions of the pixels that show the part, then the numbers of paths. The last
-/// element is the luminance of paths through the part, summed over all pixels.
+/// Result of one pass over a picture. It contains the luminances of all pixels (cd/m^2), then the fractions of all
+/// pixels that show the part, then the numbers of paths. Pixels are ordered row by row from the top. The last element
+/// is the luminance of paths through the part, summed over all pixels.
 using CameraPass = std::vector<double>;
 
 /// A picture that becomes more accurate with each pass. The passes are independent of each other.
@@ -97,8 +97,8 @@ struct CameraImage {
 
   /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
-  /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part and
-  /// has the minimum number of paths, the variance is at least the mean variance of the 5 x 5 pixels around it. Bright
+  /// Returns the standard error of a pixel, estimated from the spread of its passes. If a pixel shows the part and has
+  /// the minimum number of paths, its variance is at least the mean variance of the surrounding 5 x 5 pixels. Bright
   /// paths are rare, and a pixel without such a path would otherwise have a standard error that is too small. If the
   /// pixel has more than the minimum number of paths, its own variance and the mean variance are averaged with weights.
   /// The weight of the pixel's own variance increases with the number of its paths.

@@ -18,10 +18,10 @@ using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
 // Maximum number of neighbours that bound the portion of an element. The nearest elements are used.
 constexpr std::size_t kMaxNeighbours = 48;
-// Maximum distance in plan between an element and the other cells of its excerpt: kSurroundings element sizes and
-// kReflectedReach times the distance from the entrance face to the lowest point of the element. Total reflection at the
-// entrance face can carry light far from the element. Behind a plane surface, light that leaves an excerpt of this size
-// changes the returned power by less than 1e-4.
+// Maximum distance in plan between an element and the other cells of its excerpt. It is the sum of kSurroundings
+// element sizes and kReflectedReach times the distance from the entrance face to the lowest point of the element. Total
+// reflection at the entrance face can carry light far from the element. Behind a plane surface, light that leaves an
+// excerpt of this size changes the returned power by less than 1e-4.
 constexpr double kSurroundings = 3.0;
 constexpr double kReflectedReach = 4.0;
 // Half width of the square in which a polynomial is fitted to the surface, relative to the largest coordinate of the
@@ -373,8 +373,8 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
-/// Convergence or divergence of light behind a curved surface. For light that leaves through the point x of the tangent
-/// plane, phi(x) is the optical path that the surface adds at the entry point of this light.
+/// Convergence or divergence of light behind a curved surface. Let x be the point of the tangent plane at which light
+/// leaves. phi(x) is the optical path that the surface adds where the same light enters.
 struct Convergence {
   Eigen::Matrix2d second;  ///< second derivatives of phi
   Vec2 first;              ///< gradient of phi at the centre of the entrance face

@@ -325,8 +325,8 @@ class NoisySearch {
   double tolerance(const SearchPoint& point) const {
     const Estimate here = *estimate(point);
     if (!has_noise_) return kSmallestGain * std::abs(here.value);
-    // The error is that of an observation with the scale 1, because the last comparison has a smaller error than the
-    // refinement.
+    // The tolerance is the error of an observation with the scale 1. The error of the refinement would be too large,
+    // because the last comparison distinguishes smaller differences.
     const double scale = known_.at(point).begin()->first.scale;
     return here.std_error / scale;
   }
@@ -398,7 +398,7 @@ class NoisySearch {
       observe(points, {settings_.last_scale, replicate});
   }
 
-  /// Compares points with the smallest error and returns the best one.
+  /// Observes points with the smallest error, compares the results, and returns the best point.
   std::optional<SearchPoint> compare(const std::vector<SearchPoint>& points) {
     observe_at_last(points);
     std::optional<SearchPoint> best;

@@ -36,11 +36,11 @@ struct NoisyOptimum {
   std::size_t observations = 0;  ///< number of observed trials
 };
 
-/// Searches for the maximum of a function within its limits. First, the points of the scan are observed with a large
-/// error. Near the best points, quadratic models of the objective and of the limits are fitted to the observations, and
-/// their maxima are observed with a smaller error. The refinement ends when the model predicts differences below the
-/// error. The last candidates are compared replicate by replicate. Finally, the best point is replaced by a point with
-/// rounder values if the errors do not distinguish the two points.
+/// Searches for the maximum of a function whose constraints are satisfied. First, the points of the scan are observed
+/// with a large error. Near the best points, quadratic models of the objective and of the constraints are fitted to the
+/// observations. The maximum of the objective's model is observed with a smaller error. The refinement ends when the
+/// model predicts differences below the error. The last candidates are compared replicate by replicate. Finally, the
+/// best point is replaced by a point with rounder values if the errors do not distinguish the two points.
 /// \param scan points of the scan for each combination of discrete values
 NoisyOptimum search_with_noise(SearchedFunction& function, const std::vector<std::vector<SearchPoint>>& scan,
                                const NoisySearchSettings& settings);

@@ -44,7 +44,7 @@ struct Observation {
   std::vector<Estimate> excess;
 };
 
-/// Function that a search maximizes within limits.
+/// Function that a search maximizes under constraints. Each constraint limits a quantity.
 class SearchedFunction {
  public:
   SearchedFunction() = default;

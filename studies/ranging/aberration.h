@@ -16,7 +16,7 @@ struct Annulus {
   double outer_rad = 0.0;
 };
 
-/// Returns the range of the velocity aberration 2 v / c for a satellite on a circular orbit around the Earth and
+/// Returns the minimum and the maximum of the velocity aberration 2 v / c of a satellite on a circular orbit, for all
 /// stations on the ground. The rotation of the Earth is neglected.
 /// \param height_km height of the orbit above the equator
 /// \param elevation_deg minimum elevation of the satellite at the station

@@ -1,7 +1,7 @@
 #pragma once
 
-// Distribution of the range over the cubes of an array: the response to a pulse, and single shots in which the fields
-// of the cubes interfere.
+// Distribution of the range over the cubes of an array. Computes the response to a pulse, and single shots in which the
+// fields of the cubes interfere.
 
 #include <array>
 #include <cstddef>
@@ -38,7 +38,7 @@ RangeDistribution distribution_of(const std::vector<CubeEcho>& echoes);
 /// \param pulse_ps full width at half maximum of the power
 double pulse_sigma_mm(double pulse_ps);
 
-/// Mean response of an array to a pulse: cross section per one-way range.
+/// Response of an array to a pulse, averaged over shots: cross section per mm of one-way range.
 struct PulseResponse {
   std::vector<double> range_mm;
   std::vector<double> per_mm;  ///< in m2 per mm; its integral is the cross section of the array

@@ -173,7 +173,7 @@ std::vector<double> sorted_wavelengths(const RangingRequest& request, const desi
   return wavelengths;
 }
 
-/// Returns the cubes of a study: those of the array, or a single cube whose frame is the part frame.
+/// Returns the cubes of a study. Without an array, the result is a single cube whose frame is the part frame.
 CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
   const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
   CubeSet set;

@@ -48,7 +48,8 @@ RangingResult ranging_of(const design::Design& design, RangingRequest request, c
   return RangingStudy(design, request).run(nullptr, cancel);
 }
 
-/// Returns the cross section exactly towards the source, relative to that of a plane mirror with the same area.
+/// Returns the cross section exactly towards the source, divided by the cross section of a plane mirror with the same
+/// area.
 double relative_peak(const char* further, const Cancellation* cancel) {
   const RangingResult result = ranging_of(cube_of(kLageosMm, kSilicaBody, further), {}, cancel);
   return result.points.empty() ? 0.0 : result.points.front().centre.total / result.points.front().mirror_m2;

@@ -1,5 +1,6 @@
-// Tests of single cube corners with a circular face: closed forms of the effective aperture, the mount and the chamfer,
-// agreement of beams and rays, and agreement with hexagonal cube corners.
+// Tests of single cube corners with a circular face. Results are compared with closed forms for the effective aperture,
+// the mount and the chamfer. Results of beams are compared with rays, and results of round cube corners with hexagonal
+// cube corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +82,8 @@ struct CirclePosition {
   double radius_mm;
 };
 
-/// Returns the area of the points that are inside all discs, divided by the area of a circle. The points form a grid.
+/// Returns the area of the region inside all discs, divided by the area of a circle. The area is computed by counting
+/// the points of a grid.
 double common_area(const std::vector<CirclePosition>& discs, double radius_mm) {
   constexpr int kPoints = 800;
   const double step = 2.0 * radius_mm / kPoints;
@@ -103,7 +105,7 @@ TEST(RoundCube, FaceHasTheAreaOfTheCircle) {
   EXPECT_EQ(part.outline.size(), 180U);
   EXPECT_EQ(part.elements_full, 1);
   EXPECT_NEAR(part.element_depth_mm, kDiameter / std::numbers::sqrt2, 1e-12);
-  // The area of the facets follows from that of the face, because their normals have the same inclination.
+  // The area of the facets follows from the area of the face, because all facets have the same inclination.
   EXPECT_NEAR(part.retro_facet_area_mm2, std::numbers::sqrt3 * part.entrance_area_mm2, 1e-9);
 }
 

@@ -169,8 +169,8 @@ Optics ideal_mirrors() {
 
 // A cube corner of mirrors is behind a sphere of radius R. Light enters at the position r relative to the apex and
 // leaves at -r. The returned wave therefore has the additional optical path (n - 1) r^2 / R across its hexagon. Along
-// the path L in the part, the wave converges. Its hexagon shrinks by the fraction c = L (n - 1) / (n R), and the
-// additional path increases by the fraction c / 2.
+// the path L in the part, the wave converges. With c = L (n - 1) / (n R), its hexagon shrinks by the fraction c, and
+// the additional path increases by the fraction c / 2.
 TEST(ElementLight, SphereAgreesWithTheTransformOfItsWavefront) {
   const Part part = build_part(single(HexagonalCube{3.0}, 0.3));
   const Vec2 middle = bounding_box(part.outline).centre();

@@ -68,8 +68,8 @@ TEST(PixelPoints, AreConcentratedOnNoisyPixels) {
   EXPECT_LT(ratio, 1.0 + 1.7 * std::numbers::sqrt2);
 }
 
-/// For a picture with two kinds of noisy areas, the numbers of points are proportional to the 2/3 power of the standard
-/// deviations, within the rounding to powers of two.
+/// The picture has two kinds of noisy areas. Within the rounding to powers of two, the numbers of points are
+/// proportional to the 2/3 power of the standard deviations.
 TEST(PixelPoints, IncreaseWithTheStandardDeviation) {
   std::vector<PixelMoments> moments(kColumns * kRows, constant(0.0));
   for (std::size_t row = 5; row < 15; ++row)

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prisms with rounded roots and rough facets, which are traced by rays.
+/// Returns a design of prisms with rounded roots and rough facets. Such prisms are traced by rays.
 std::string rough_design() {
   return "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nx_length_mm = "
          "30\n"

@@ -145,7 +145,8 @@ class SectorModel {
     return true;
   }
 
-  /// Returns the order in which light that enters at a point meets the facets, or nothing if it meets a side.
+  /// Returns the order in which light meets the facets if it enters at a given point. Returns nothing if the light
+  /// meets a side.
   std::optional<Order> order_of(const Vec2& at) const {
     if (!is_in_outline(at)) return std::nullopt;
     Vec3 p(at.x(), at.y(), cube_.thickness_mm);
