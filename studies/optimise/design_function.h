@@ -1,6 +1,6 @@
 #pragma once
 
-// The designs of a study as points of a search. Internal to studies/optimise.
+// Maps the designs of a study to the points of a search. Internal to studies/optimise.
 
 #include <cstddef>
 #include <map>

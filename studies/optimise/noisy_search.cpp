@@ -239,7 +239,8 @@ class NoisySearch {
     return models;
   }
 
-  /// Returns the allowed point that is nearest to `point` on the line from `from` to `point`. \pre `from` is allowed
+  /// Returns the allowed point that is nearest to `point` on the line from `from` to `point`.
+  /// \pre `from` is allowed
   SearchPoint pulled_back(const SearchPoint& from, const SearchPoint& point) const {
     if (function_.is_allowed(point)) return point;
     double good = 0.0;

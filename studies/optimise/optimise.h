@@ -131,9 +131,9 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
 /// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
 /// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
-/// within bounds and constraints. Finally, values are rounded if this does not make the design worse. If quantities
-/// have random errors, search_with_noise() is used. Designs that are already in the store are not computed again, and
-/// the result is the same. The result of an interrupted search contains all designs of the store.
+/// within bounds and constraints. Finally, parameters are rounded if the objective does not decrease significantly. If
+/// quantities have random errors, search_with_noise() is used. Designs that are already in the store are not computed
+/// again, and the result is the same. The result of an interrupted search contains all designs of the store.
 /// \throw OutputError if a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                  OptimiseObserver* observer, const Cancellation* cancel);

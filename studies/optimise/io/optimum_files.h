@@ -15,7 +15,7 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
 std::string front_csv(const Study& study, const Optimum& optimum);
 
 /// Returns all evaluated designs as CSV, with one line for each design. The columns contain the parameters, the
-/// quantities with their standard errors, and the objective. The last information is whether the design satisfies all
+/// quantities with their standard errors, and the objective. The last column states whether the design satisfies all
 /// constraints.
 std::string designs_csv(const Study& study, const Optimum& optimum);
 
