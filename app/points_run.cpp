@@ -33,7 +33,7 @@ class PointsBar : public studies::SweepObserver {
     const auto now = std::chrono::steady_clock::now();
     if (!so_far_ || now - last_line_ < kTimeBetweenLines || done == total) return;
     bar_.write_lines(so_far_() + '\n');
-    // Reading many points takes time. Lines therefore become rarer as the run takes longer.
+    // Reading many points takes time. The intervals between lines therefore increase during a long run.
     last_line_ = std::chrono::steady_clock::now();
     last_line_ += kPauseFactor * (last_line_ - now);
   }

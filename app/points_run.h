@@ -23,8 +23,8 @@ struct PointsCommand {
   /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;
   std::string document;  ///< name of the JSON document in the output folder
-  /// Function that describes the result of the points that are finished so far, in one line. The line is written from
-  /// time to time during a long run. Empty: no such lines.
+  /// Function that summarises the finished points in one line. During a long run, this line is written from time to
+  /// time. Empty: no such lines are written.
   std::function<std::string(const std::vector<compute::StoredPoint>& points)> so_far = {};
   /// Function that adds further output files.
   /// \param result result of the computation; it has a value when the contents of the files are requested

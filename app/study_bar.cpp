@@ -72,7 +72,7 @@ void SearchBar::on_best(std::function<std::string(const studies::Variant&)> text
 
 void SearchBar::at_best(const studies::Variant& best) {
   if (text_of_best_) best_ = text_of_best_(best);
-  // Runs that end soon print no lines, because their results follow immediately.
+  // Short runs print no lines, because their results follow soon.
   const auto now = std::chrono::steady_clock::now();
   if (!best_.empty() && now - last_line_ > kTimeBetweenLines) {
     bar_.write_lines("best so far: " + best_ + "\n");

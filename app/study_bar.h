@@ -28,10 +28,10 @@ class SearchBar : public studies::OptimiseObserver, public studies::SweepObserve
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
   void at_fraction(double fraction) override;
   void at(std::size_t evaluated) override;
-  /// Shows the best design so far, on a terminal next to the number of designs. Otherwise, writes a line from time to
-  /// time. Then calls the function of on_best().
+  /// Shows the best design so far. On a terminal, it is shown next to the number of designs. Otherwise, a line is
+  /// written from time to time. Then calls the function that was given to on_best().
   void at_best(const studies::Variant& best) override;
-  /// Sets the text for a design, and a function that is called for each new best design.
+  /// Sets a function that describes a design in words, and a function that is called for each new best design.
   void on_best(std::function<std::string(const studies::Variant&)> text,
                std::function<void(const studies::Variant&)> action);
   void at_group(double fraction, std::size_t designs) override;

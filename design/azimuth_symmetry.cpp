@@ -34,8 +34,7 @@ std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
   const geometry::ArrayLayout& array = part.array;
   return std::visit(
       Overloaded{[&](const geometry::RtpElement&) {
-                   // A checker array is mapped onto itself by a rotation by 90 degrees and a shift by one
-                   // cell.
+                   // A rotation by 90 degrees and a shift by one cell map a checker array onto itself.
                    const bool is_checker =
                        array.arrangement == Arrangement::checker && array.x_gap_mm == array.y_gap_mm;
                    return std::optional(AzimuthSymmetry{is_checker ? 90.0 : 180.0, 0.0});

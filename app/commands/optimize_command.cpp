@@ -36,7 +36,7 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
   return all;
 }
 
-/// Returns the request for the job of a study. Options that are not given have the values of [machining].
+/// Returns the request for the job of a study. Options that are not given are taken from [machining].
 JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& common, const studies::Study& study) {
   JobRequest request = job_request(options.making, common);
   if (options.job.empty()) return request;
@@ -54,7 +54,7 @@ JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& c
 
 /// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
 /// not given, it is the value of the key machining.tool_width_mm of the study. If [machining] names a machine, the job
-/// has its tool and its process.
+/// uses the tool and the process of [machining].
 studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {
@@ -99,7 +99,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = study_of(options, common);
   const studies::OptimiseRequest request = studies::read_optimise(study);
-  studies::optimise_scan(study, request);  // refuses too many designs before a store is created
+  studies::optimise_scan(study, request);  // throws if there are too many designs, before a store is created
   const JobRequest making = request_of_job(options, common, study);
   check_making_of(options, making, study);
   const OrderlyInterrupt interrupt;
@@ -128,7 +128,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
         "designs", common);
     bar.on_best([&](const studies::Variant& best) { return studies::short_text(study, request, best); },
                 [&](const studies::Variant& best) {
-                  // A killed run leaves the best design so far.
+                  // If the run is killed, the file contains the best design so far.
                   if (!file.empty()) write_file_atomically(file.parent_path() / "best.toml", best_text(best));
                 });
     interrupt.run(common.threads, [&](const Cancellation* cancel) {

@@ -63,7 +63,7 @@ bool has_results(const fs::path& file) {
     if (sqlite.execAndGet("PRAGMA application_id").getInt() != kApplication) return true;
     return sqlite.execAndGet("SELECT count(*) FROM points WHERE failed = 0").getInt() > 0;
   } catch (const SQLite::Exception&) {
-    return true;  // the file is damaged or not a store
+    return true;  // the file is damaged or is not a store
   }
 }
 

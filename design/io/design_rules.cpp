@@ -80,7 +80,7 @@ struct FootprintOf {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// Returns the footprint of a circle.
+  /// Returns the footprint of the circular face.
   Footprint operator()(const RoundCube& cube) const {
     return {cube.diameter_mm, cube.diameter_mm, 0.25 * std::numbers::pi * cube.diameter_mm * cube.diameter_mm};
   }
@@ -136,8 +136,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes, and that a single element has
-/// no outline unless it is a round cube corner.
+/// Checks that a design with a curved entrance face has a convex outline without holes. Also checks that a single
+/// element has no outline, unless it is a round cube corner.
 void check_outline(const Document& document, const PartSpec& part) {
   if (has_outline(document) && part.array.arrangement == Arrangement::single &&
       !std::holds_alternative<RoundCube>(part.element))
@@ -147,7 +147,7 @@ void check_outline(const Document& document, const PartSpec& part) {
                 "must be a convex outline without holes if the design has a table [entrance_surface]");
 }
 
-/// Returns the key of the errors of dihedral angles that a design contains.
+/// Returns the key by which a design gives the errors of the dihedral angles.
 std::string_view dihedral_key(const Document& document) {
   return document.has(kDihedralErrorArcsec) ? kDihedralErrorArcsec : kDihedralErrorArcmin;
 }
@@ -373,7 +373,7 @@ void check_face_of_round_cube(const Document& document, const PartSpec& part) {
         "is below this centre");
 }
 
-/// Checks that three mirrors without a body have no key of a body.
+/// Checks that a hollow cube corner, which has no body, gives no keys of a body.
 void check_hollow(const Document& document) {
   constexpr std::string_view key = "element.hollow";
   if (!document.has(key) || !document.flag(key)) return;

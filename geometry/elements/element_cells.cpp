@@ -191,7 +191,8 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
 }
 
 Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
-  // Number of sides. It is a multiple of 12, so that the polygon has the symmetry of a cube corner.
+  // Number of sides of a polygon that replaces a circle. It is a multiple of 12, so that the polygon has the symmetry
+  // of a cube corner.
   constexpr int kSides = 180;
   constexpr double kStepDeg = 360.0 / kSides;
   const double step_rad = 2.0 * std::numbers::pi / kSides;

@@ -49,10 +49,10 @@ struct TriangularCube {
 struct RoundCube {
   double diameter_mm = 0.0;  ///< diameter of the face; > 0
   Cant cant = {};
-  double chamfer_mm = 0.0;  ///< width of the chamfer at the rim of the face, in plan; light that meets it is stopped
+  double chamfer_mm = 0.0;  ///< width of the chamfer at the rim of the face, in plan; the chamfer stops light
   double recess_mm = 0.0;   ///< distance from the face to the edge of the mount, >= 0
-  /// Diameter of the circular edge of the mount. Light that crosses the plane of the edge outside of it is stopped. 0:
-  /// there is no mount.
+  /// Diameter of the circular edge of the mount. Light that crosses the plane of the edge outside this circle is
+  /// stopped. 0: there is no mount.
   double mount_diameter_mm = 0.0;
   /// Convex outline that also cuts the face, or null. The centre of its bounding box is above the apex.
   std::shared_ptr<const PlanRegion> outline = {};

@@ -10,13 +10,13 @@
 
 namespace retrace::geometry {
 
-/// Words of `element.kind`, in the order of the alternatives of Element. Only designs allow round cube corners and
-/// balls.
+/// Values of `element.kind`, in the order of the alternatives of Element. Round cube corners and balls are allowed only
+/// in designs.
 inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ball"};
 inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
 
 inline constexpr auto kRoundCube = schema::only(kElementKinds, "round_icc");
-/// Cube corners, with the kinds that only designs allow.
+/// Kinds of cube corners, including the kinds that are allowed only in designs.
 inline constexpr auto kCubeKindsOfDesigns = schema::only(kElementKinds, "hexagonal_icc", "round_icc");
 
 /// Words of `array.arrangement`, in the order of the enumerators of Arrangement.

@@ -15,8 +15,9 @@ constexpr double kSameCorner = 1e-9;
 constexpr double kMinFacetRoom = 1e-6;
 // Distance between the outline of an excerpt and all its facets, as a fraction of the element's size.
 constexpr double kExcerptMargin = 0.25;
-// Distance by which the sides of an excerpt are moved outwards, as a fraction of the element's size. Light then meets
-// the walls of cut elements, which are in the planes of the sides, before it meets the sides.
+// Distance by which the sides of an excerpt are moved outwards, as a fraction of the element's size. Walls of cut
+// elements are in the planes of the sides. Because of this displacement, light meets these walls before it meets the
+// sides.
 constexpr double kBehindCells = 1e-9;
 
 Vec3 shift_of(const Placement& placement) {

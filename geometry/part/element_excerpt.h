@@ -25,8 +25,8 @@ struct PartElement {
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
 std::vector<PartElement> part_elements(const Part& part);
 
-/// Kind of a cell in an excerpt: a cell of the element, of another element, of flat land, or a side of the original
-/// part.
+/// Kind of a cell in an excerpt. A cell belongs to the element, to another element, to flat land, or to a side of the
+/// original part.
 enum class ExcerptCell { own_element, other_element, land, side };
 
 /// Element with its surroundings as a separate part. Coordinates are in the frame of the excerpt.

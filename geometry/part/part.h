@@ -65,10 +65,10 @@ struct Part {
   /// the outline is the entrance face. The sides that are not on the hull are then facets of the back surface, with the
   /// role `side`, and `top_mm` is the height of the entrance face.
   std::vector<Polygon> entrance_pieces;
-  /// Convex area of the entrance face inside a chamfer. Light that meets the face outside of it is stopped. Empty: the
-  /// whole face is clear.
+  /// Convex area of the entrance face inside a chamfer. Light that meets the face outside this area is stopped. Empty:
+  /// there is no chamfer.
   Polygon clear_face;
-  /// Opening through which light must pass on its way to the entrance face and on its way back
+  /// Opening of the mount, through which light must pass on its way to the entrance face and on its way back.
   std::optional<FaceOpening> mount;
   /// Period of an infinite part. The surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y.
   std::optional<Vec2> period_mm;

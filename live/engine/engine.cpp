@@ -53,7 +53,7 @@ Json materials_json(const materials::MaterialLibrary& library) {
   return list;
 }
 
-/// Returns the template of `retrace init`. If requested, the array is made infinite, unless the element is single.
+/// Returns the template of `retrace init`. If requested, an array is made infinite. A single element is not changed.
 std::string template_of(const std::string& kind, const std::string& extent) {
   std::string text = design::design_template(kind);
   if (extent.empty() || extent == "finite") return text;

@@ -15,7 +15,7 @@ using geometry::FacetRole, surface_models::Lobe;
 
 // Maximum number of steps of a nearly horizontal beam between two interfaces.
 constexpr std::uint32_t kMaxLevelSteps = 1000;
-// Number of faces of the hull above which leave_hull() first discards those that a fragment does not meet.
+// Number of hull faces above which leave_hull() first discards the faces that a fragment does not meet.
 constexpr std::size_t kManyExits = 8;
 
 /// Returns the power of a fragment at the plane where the beam starts.
@@ -160,7 +160,8 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
   offer({Vec3::UnitZ(), setup.thickness_mm}, FacetRole::entrance);
   for (const auto& side : setup.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
 
-  // A plane is not met if the whole fragment reaches another plane earlier. A cylinder has many such planes.
+  // A fragment does not meet a plane if the whole fragment reaches another plane earlier. This is frequent for a
+  // cylinder, which consists of many planes.
   double latest = std::numeric_limits<double>::infinity();
   const auto range_of = [&](const Exit& exit) {
     std::pair range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
@@ -229,7 +230,7 @@ bool counts_as_cell(const BeamScene& scene, const Candidate& facet) {
   return scene.policy.excerpt == nullptr || scene.policy.excerpt->kind_of(facet.cell) != geometry::ExcerptCell::side;
 }
 
-/// Returns true if light that meets its first cell is traced further.
+/// Returns true if light is traced further after it has met its first cell.
 bool is_traced(const BeamStep& step, const CellInstance& cell) {
   const ExcerptLight* const excerpt = step.scene.policy.excerpt;
   if (excerpt == nullptr) return true;

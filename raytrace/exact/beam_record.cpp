@@ -33,7 +33,7 @@ void BeamRecord::enter() {
   if (observer_ && entry.reflected.i > 0.0) observe_entrance_reflection();
 }
 
-/// Records the incident light that stops, the entrance face and its layers prevent from entering.
+/// Records the incident light that does not enter the part because of stops, the entrance face or its layers.
 void BeamRecord::enter_past_stops() {
   const LightSetup::Entry& entry = scene_.setup.entry;
   const LitFace lit(scene_);
@@ -117,7 +117,7 @@ ReturnedBeam BeamRecord::returned_beam(const Beam& beam, CoherentLight light, co
   return returned;
 }
 
-/// Returns the description of the light that the entrance face reflects, without its polygon.
+/// Returns the light that the entrance face reflects. The polygon of the returned beam is not set.
 ReturnedBeam BeamRecord::reflection_of_face() const {
   const LightSetup::Entry& entry = scene_.setup.entry;
   ReturnedBeam front;

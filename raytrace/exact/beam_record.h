@@ -41,8 +41,8 @@ class BeamRecord {
   /// Records light that leaves through the entrance face.
   /// \param direction direction of the light in air
   void leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction);
-  /// Reduces a beam on the entrance face to its portion within a convex area, which is relative to the centre of the
-  /// face. The light of the other portion is added to `stopped`. Returns false if no portion remains.
+  /// Clips a beam on the entrance face to a convex area. The area is relative to the centre of the face. The light
+  /// outside this area is added to `stopped`. Returns false if nothing of the beam remains.
   /// \param power power of the light, divided by transmission_of(beam)
   bool keep_within(Beam& beam, const geometry::Polygon& area, double power);
   /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.

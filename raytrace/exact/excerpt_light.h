@@ -1,6 +1,6 @@
 #pragma once
 
-// Light that is traced in an excerpt of a larger part.
+// Selection of the light that is traced in an excerpt of a larger part.
 
 #include "geometry/part/element_excerpt.h"
 #include "raytrace/exact/beam.h"
@@ -8,9 +8,10 @@
 namespace retrace::raytrace {
 
 /// Selects the light of one element of a larger part, which is traced in an excerpt around this element. Light belongs
-/// to the element that it meets first, even if a side of the part has reflected it before. Light that first meets flat
-/// land belongs to the element in whose portion of the entrance face it entered. Other light is not traced, and its
-/// power is in no account of the ledger. The sides of the larger part do not count as cells of the back (CellTrail).
+/// to the element that it meets first, even if a side of the part has reflected the light before. Light that first
+/// meets flat land belongs to the element through whose portion of the entrance face it entered. All other light is not
+/// traced, and no account of the ledger contains its power. The sides of the larger part do not count as cells of the
+/// back (CellTrail).
 ///
 /// The larger part continues beyond the outline of the excerpt. Light that reaches the outline is not traced further,
 /// and its power is added to `truncated`.
@@ -21,7 +22,7 @@ struct ExcerptLight {
 
   geometry::ExcerptCell kind_of(const CellInstance& cell) const { return excerpt.cells[cell.id]; }
   /// Returns true if a fragment of the light belongs to the element.
-  /// \param entry_mm any point at which the fragment entered, in the frame of the excerpt
+  /// \param entry_mm any point of the region through which the fragment entered, in the frame of the excerpt
   /// \param cell first cell that the light meets
   bool is_own(const Vec2& entry_mm, const CellInstance& cell) const {
     using enum geometry::ExcerptCell;

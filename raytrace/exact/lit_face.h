@@ -6,12 +6,13 @@
 
 namespace retrace::raytrace {
 
-/// Light at the plane entrance face of a part with stops (FaceStops). Polygons are relative to the centre of the face.
+/// Illuminated portions of the plane entrance face of a part with stops (FaceStops). Polygons are relative to the
+/// centre of the face.
 struct LitFace {
   explicit LitFace(const BeamScene& scene);
 
   Corners reached;                  ///< portion of the face that the incident light reaches
-  Corners reflected;                ///< portion whose reflected light passes the mount on its way back
+  Corners reflected;                ///< portion of the face whose reflected light passes the mount
   double reached_fraction = 0.0;    ///< area of `reached`, divided by the area of the face
   double reflected_fraction = 0.0;  ///< area of `reflected`, divided by the area of the face
 };

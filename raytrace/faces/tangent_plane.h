@@ -40,13 +40,13 @@ Vec3 refracted_inside(const Vec2& slope, const Vec3& to_source, double index);
 std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, const Vec3& target_mm,
                                    const Vec3& to_source, double index);
 
-/// Returns the matrix K that describes how a curved surface displaces light relative to its tangent plane. Light that
-/// would reach a point of a horizontal plane from the point e of the tangent plane, relative to the tangent point, if
-/// the surface were plane, reaches it from the point K e behind the surface. K is computed from the directions of
-/// neighbouring rays after refraction. Its determinant is the ratio of the illuminance behind the surface to the
-/// illuminance behind the tangent plane. Coordinates are those of the frame of the tangent plane. Returns nothing if
-/// the surface is not defined around the tangent point, or if the rays cross each other before they reach the
-/// horizontal plane.
+/// Returns the matrix K that describes how a curved surface displaces light relative to its tangent plane. Consider
+/// light that reaches a given point of a horizontal plane inside the part. If the surface were its tangent plane, this
+/// light would enter at the point e, relative to the tangent point. Through the curved surface, it enters at the point
+/// K e. K is computed from the directions of neighbouring rays after refraction. Its determinant is the ratio of the
+/// illuminance behind the surface to the illuminance behind the tangent plane. All coordinates are in the frame of the
+/// tangent plane. Returns nothing if the surface is not defined around the tangent point, or if the rays cross each
+/// other before they reach the horizontal plane.
 /// \param height_mm height of the horizontal plane
 /// \param step_mm distance of the neighbouring rays from the tangent point
 std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurface& surface, const TangentPlane& plane,

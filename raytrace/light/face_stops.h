@@ -9,8 +9,8 @@
 
 namespace retrace::raytrace {
 
-/// Areas through which light must pass on its way to the entrance face and on its way back. Positions are relative to
-/// the centre of the entrance face in x and y.
+/// Openings through which light must pass on its way to the entrance face and on its way back. Positions are relative
+/// to the centre of the entrance face in x and y.
 class FaceStops {
  public:
   FaceStops() = default;
@@ -24,8 +24,8 @@ class FaceStops {
   bool is_clear(const Vec2& at_mm) const { return !clear_face_ || clear_face_->contains(at_mm); }
   /// Returns true if a line crosses the plane of the mount's edge inside the edge.
   bool passes_mount(const Vec3& position, const Vec3& direction) const;
-  /// Returns true if light from the source reaches a point of the plane entrance face, and if light that leaves this
-  /// point in another direction is not stopped.
+  /// Returns true if light passes the stops in both directions. It must reach the point `on_face` from the source, and
+  /// must then leave this point in the direction `leaving`.
   bool passes_both_ways(const Vec3& on_face, const Vec3& to_source, const Vec3& leaving) const {
     return is_clear(on_face.head<2>()) && passes_mount(on_face, to_source) && passes_mount(on_face, leaving);
   }
@@ -38,13 +38,14 @@ class FaceStops {
   /// Returns the area of the plane entrance face that is not on the chamfer.
   /// \pre has_chamfer()
   const geometry::Polygon& clear_face() const { return clear_face_->outline; }
-  /// Returns the area of the plane of the entrance face from which light in this direction passes the mount, or to
-  /// which light against this direction passes the mount.
+  /// Returns the area in the plane of the entrance face from which light in the given direction passes the mount. Light
+  /// in the opposite direction passes the mount towards the same area.
   /// \pre has_mount()
   geometry::Polygon face_through_mount(const Vec3& direction) const;
 
  private:
-  /// Convex polygon, with the radii of circles about its centre between which its border is located.
+  /// Convex polygon, with the radii of two circles about its centre. The border of the polygon is between these
+  /// circles.
   struct Opening {
     explicit Opening(geometry::Polygon polygon);
     bool contains(const Vec2& at_mm) const;

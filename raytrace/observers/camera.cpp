@@ -39,8 +39,8 @@ constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
 // Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Number of the training pass of a PixelGuide. The training passes of PixelPoints have the numbers below it, and the
-// passes of a picture have still smaller numbers.
+// Pass number of the training pass of a PixelGuide. The training passes of PixelPoints have the next smaller numbers.
+// The passes of a picture are numbered from 0.
 constexpr std::uint32_t kTrainingPass = 0xffffffff;
 constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
@@ -48,8 +48,8 @@ constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMaxTiles = 8;
 
-// Weight of the neighbours of a pixel in the estimate of its variance, in paths that show the lamp. A pixel in which
-// fewer paths show the lamp has an uncertain variance of its own.
+// Weight of the neighbouring pixels in the estimate of a pixel's variance. The unit is the number of paths that show
+// the lamp. With fewer such paths, the variance of the pixel's own paths is uncertain.
 constexpr double kKnownHits = 4.0;
 
 Vec2 in_unit_disc(double u, double v) {
@@ -95,7 +95,8 @@ double CameraImage::std_error(std::size_t pixel) const {
   const double n = paths[pixel];
   if (!has_more_paths(pixel)) return std::sqrt(std::max(own, of_path / n));
   if (!(of_path > 0.0)) return std::sqrt(own);
-  // If each path shows either a bright lamp or darkness, this is the number of paths of which kKnownHits show the lamp.
+  // Number of paths of which kKnownHits are expected to show the lamp, if each path shows either a bright lamp or
+  // darkness.
   const double known = kKnownHits * (1.0 + of_path / (mean * mean));
   return std::sqrt((n * own + known * of_path / n) / (n + known));
 }
@@ -217,8 +218,8 @@ struct CameraTracer::Impl {
   bool has_learnt_all = false;      ///< true if the guide has been trained with the training pass and with pass 0
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
   std::vector<float> levels;        ///< indexed by pixel: typical luminance, see GuideTraining::level_of()
-  PixelPoints points;               ///< numbers of points per pass
-  bool has_chosen_points = false;   ///< true if `points` were chosen by training passes
+  PixelPoints points;               ///< number of points of each pixel in a pass
+  bool has_chosen_points = false;   ///< true if training passes have determined `points`
 };
 
 /// Training samples for a PixelGuide, collected during one pass.
@@ -304,7 +305,7 @@ std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ra
 
 Contact CameraTracer::Impl::contact_of(const WorldRay& ray) const {
   if (scene.film) return contact_with(*scene.film, part.thickness_mm, ray);
-  if (has_shells)  // shells may extend beyond the part and may deflect any ray towards it
+  if (has_shells)  // a shell may extend beyond the part and deflect any ray towards the part
     return {Contact::Kind::outside, ray.origin, ray.origin, Eigen::Matrix3d::Identity(), 0};
   const double nearest = (middle - ray.origin).dot(ray.direction);
   if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
@@ -340,9 +341,9 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path from a point outside of the part. This function is used for all paths if the entrance
-  /// face is curved or if there are shells, and for paths that do not meet the entrance face of a part with notches or
-  /// holes. Returns false if the light misses the part.
+  /// Traces the light of one path from a point outside of the part. If the entrance face is curved or if there are
+  /// shells, this function is used for all paths. Otherwise, it is used for paths that do not meet the entrance face of
+  /// a part with notches or holes. Returns false if the light does not meet the part.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
@@ -359,15 +360,15 @@ struct CameraTracer::Impl::Block {
     return true;
   }
 
-  /// Returns the power that shells have reflected so far, and the power that has left the part and missed a shell. The
-  /// walker does not trace this light further.
+  /// Returns the power of light that the walker does not trace further because of shells. This light was reflected by a
+  /// shell, or it left the part and missed a shell.
   double stopped_at_shells() const {
     return tally.other[Account::shell_reflected] + tally.other[Account::returned_elsewhere];
   }
   /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
-  std::vector<CameraSample> paths;  ///< as many per pixel as Impl::points contains
+  std::vector<CameraSample> paths;  ///< samples of all paths; Impl::points contains the number for each pixel
   Tally tally{1};
   SensorAccumulator accumulator;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
@@ -583,7 +584,8 @@ std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t numb
   return result;
 }
 
-/// Traces training passes and chooses the numbers of points by their noise. Returns false if tracing was cancelled.
+/// Traces training passes and determines the number of points of each pixel from the noise of these passes. Returns
+/// false if tracing was cancelled.
 bool CameraTracer::Impl::choose_points(const Cancellation* cancel) {
   std::vector<PixelMoments> moments(scene.view.columns * scene.view.rows);
   for (std::uint32_t k = 1; k <= kTrainingPassesOfPoints; ++k)

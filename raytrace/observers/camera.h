@@ -79,9 +79,9 @@ struct WeightedOptics {
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// Result of one pass over a picture. It contains three values per pixel, row by row from the top: first the luminances
-/// of all pixels (cd/m^2), then the fractions of the pixels that show the part, then the numbers of paths. The last
-/// element is the sum over all pixels of the luminance that comes from paths through the part.
+/// Result of one pass over a picture. It contains the luminances of all pixels (cd/m^2), then the fractions of all
+/// pixels that show the part, then the numbers of paths. Pixels are ordered row by row from the top. The last element
+/// is the luminance of paths through the part, summed over all pixels.
 using CameraPass = std::vector<double>;
 
 /// A picture that becomes more accurate with each pass. The passes are independent of each other.
@@ -97,20 +97,21 @@ struct CameraImage {
 
   /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
-  /// Returns the standard error of a pixel, estimated from the spread of its passes. If the pixel shows the part and
-  /// has the minimum number of paths, the variance is at least the mean variance of the 5 x 5 pixels around it. A pixel
-  /// without a sample of the rare bright paths would otherwise have a standard error that is too small. If the pixel
-  /// has more paths, the result follows from a weighted mean of these two variances. The weight of the pixel's own
-  /// variance increases with the number of its paths. \pre passes > 1
+  /// Returns the standard error of a pixel, estimated from the spread of its passes. If a pixel shows the part and has
+  /// the minimum number of paths, its variance is at least the mean variance of the surrounding 5 x 5 pixels. Bright
+  /// paths are rare, and a pixel without such a path would otherwise have a standard error that is too small. If the
+  /// pixel has more than the minimum number of paths, its own variance and the mean variance are averaged with weights.
+  /// The weight of the pixel's own variance increases with the number of its paths.
+  /// \pre passes > 1
   double std_error(std::size_t pixel) const;
   /// Returns the number of paths through all pixels.
   double total_paths() const;
   /// Returns the mean luminance of the part; part_error() returns its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part. The errors
-  /// of pixels with more than the minimum number of paths are estimated only from their own passes. Including their
-  /// neighbours would overestimate the mean, because noisy pixels are often next to dark ones.
+  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part. For pixels
+  /// with more than the minimum number of paths, only their own passes are used. Including the neighbours would
+  /// overestimate the mean, because noisy pixels are often next to dark pixels.
   double relative_noise() const;
 
  private:
@@ -154,7 +155,8 @@ class CameraTracer {
   ///
   /// With the cell engine, a PixelGuide selects half of the points of a pixel if this reduces the noise. The first call
   /// trains the guide with pass 0 and with a training pass that is not part of the picture. With Embree, noisy pixels
-  /// have more points (PixelPoints). Their numbers follow from two training passes that are not part of the picture.
+  /// have more points (PixelPoints). Two training passes, which are not part of the picture, determine the numbers of
+  /// points.
   /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;

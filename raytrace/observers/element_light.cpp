@@ -18,16 +18,16 @@ using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
 // Maximum number of neighbours that bound the portion of an element. The nearest elements are used.
 constexpr std::size_t kMaxNeighbours = 48;
-// Maximum distance in plan between an element and the other cells of its excerpt: kSurroundings element sizes and
-// kReflectedReach times the distance from the entrance face to the lowest point of the element. Light that the entrance
-// face reflects totally to other elements travels far. Behind a plane surface, the light that leaves an excerpt of this
-// size changes the returned power by less than 1e-4.
+// Maximum distance in plan between an element and the other cells of its excerpt. It is the sum of kSurroundings
+// element sizes and kReflectedReach times the distance from the entrance face to the lowest point of the element. Total
+// reflection at the entrance face can carry light far from the element. Behind a plane surface, light that leaves an
+// excerpt of this size changes the returned power by less than 1e-4.
 constexpr double kSurroundings = 3.0;
 constexpr double kReflectedReach = 4.0;
 // Half width of the square in which a polynomial is fitted to the surface, relative to the largest coordinate of the
 // polygon from shadow_of().
 constexpr double kFittedWidth = 1.25;
-// Distance from the tangent point to the rays that entry_displacement() compares, in element sizes.
+// Distance between the tangent point and the neighbouring rays in entry_displacement(), in element sizes.
 constexpr double kRayDistance = 0.05;
 // Area below which a polygon counts as empty, as a fraction of the squared element size.
 constexpr double kEmptyArea = 1e-9;
@@ -58,7 +58,7 @@ Polygon as_polygon(const FlatPolygon& polygon) {
   return {polygon.begin(), polygon.end()};
 }
 
-/// A vertical side of the part.
+/// Vertical side of the part.
 struct Side {
   Vec2 on_mm = Vec2::Zero();  ///< point of the side
   Vec2 outward = Vec2::UnitX();
@@ -72,9 +72,9 @@ std::vector<Vec3> mirrored_at(const Side& side, std::vector<Vec3> corners_mm) {
   return corners_mm;
 }
 
-/// Returns the corners of an element and of the mirror images that light can reach. The light that a side reflects to
-/// the element is light that travels straight to the mirror image of the element behind this side. Light may be
-/// reflected by up to two sides.
+/// Returns the corners of an element and of its mirror images behind sides that can reflect light to the element.
+/// Without a side, the light that this side reflects would travel straight to the mirror image. Up to two reflections
+/// are considered.
 /// \param reach_mm maximum horizontal distance that light travels before it meets the element
 std::vector<std::vector<Vec3>> images_of(const PartElement& element, const Polygon& outline, const Vec3& inside,
                                          double reach_mm) {
@@ -99,8 +99,8 @@ std::vector<std::vector<Vec3>> images_of(const PartElement& element, const Polyg
   return images;
 }
 
-/// Returns the mean height of the corners that are seen as corners of the outline of an element from the direction of
-/// the light. The outline of a cube corner is its rim.
+/// Returns the mean height of those corners of an element that are on its outline, seen along the direction of the
+/// light. The outline of a cube corner is its rim.
 double rim_height(const std::vector<Vec3>& corners_mm, const Vec3& inside) {
   const auto seen = [&](const Vec3& p) { return Vec2((p - p.z() / inside.z() * inside).head<2>()); };
   std::vector<Vec2> points;
@@ -116,8 +116,8 @@ double rim_height(const std::vector<Vec3>& corners_mm, const Vec3& inside) {
   return sum / count;
 }
 
-/// Returns the projection of the corners of an element onto the tangent plane, along the light inside the part. If
-/// there were no other elements, all light that enters through the hull of these points would meet the element first.
+/// Returns the convex hull of an element's corners after their projection onto the tangent plane, along the light
+/// inside the part. Without other elements, all light that enters through this hull would meet the element first.
 /// \param inside direction of the light in the frame of the tangent plane
 Polygon shadow_of(const std::vector<Vec3>& corners_mm, const TangentPlane& plane, const Vec3& inside) {
   std::vector<Vec2> points;
@@ -145,7 +145,7 @@ struct ElementLight::Bounds {
     cut(polygon, of_part, merge_mm);
     return polygon;
   }
-  /// Returns the bounds of points e, given the bounds of the points K e.
+  /// Returns the bounds of points e from the bounds of the points K e, where K is the displacement matrix.
   Bounds before(const Eigen::Matrix2d& displacement) const {
     Bounds changed = *this;
     for (std::vector<HalfPlane>* const halves : {&changed.of_part, &changed.of_neighbours})
@@ -282,14 +282,14 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   if (!displacement) return nullptr;
   const double denser = displacement->determinant();
   if (denser > kMaxConcentration || denser < 1.0 / kMaxConcentration) return nullptr;
-  // The tracer divides the light where it would enter through the tangent plane. There, the light that a convex surface
-  // lets in covers a smaller area.
+  // The tracer works with points at which the light would enter through the tangent plane. Behind a convex surface,
+  // these points cover a smaller area than the actual entry points.
   const Bounds model_bounds = bounds.before(*displacement);
   const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
   scene->is_lit = portion.size() >= 3;
   if (!scene->is_lit) return scene;
-  // Light that meets the element first enters within the shadows of the element and of its mirror images. Light between
-  // the shadows meets other elements first, and the tracer ignores it (ExcerptLight).
+  // All light that meets the element first enters through the shadow of the element or of one of its mirror images.
+  // Light that enters between these shadows meets other elements first and is not traced (ExcerptLight).
   const double height_mm = plane->point_mm.z() - own.lower_mm.z();
   const double reach_mm = height_mm * direction.head<2>().norm() / -direction.z();
   Polygon entries;
@@ -373,12 +373,12 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
-/// Light behind a curved surface, which converges or diverges inside the part. Let phi(x) be the optical path that the
-/// surface adds where light enters, as a function of the point x of the tangent plane where it leaves.
+/// Convergence or divergence of light behind a curved surface. Let x be the point of the tangent plane at which light
+/// leaves. phi(x) is the optical path that the surface adds where the same light enters.
 struct Convergence {
   Eigen::Matrix2d second;  ///< second derivatives of phi
   Vec2 first;              ///< gradient of phi at the centre of the entrance face
-  double path_mm = 0.0;    ///< length of the path inside the part of the light that leaves at the tangent point
+  double path_mm = 0.0;    ///< path length inside the part, for light that leaves at the tangent point
 };
 
 Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, const TexturedHit& entry) {
@@ -387,7 +387,8 @@ Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, 
   const Eigen::Matrix2d gradients = entry.path_per_height * slope.transpose() * scene.sag.curvature_per_mm();
   of.second = gradients * slope;
   of.first = gradients * (beam.entry_from_exit.translation() + beam.centre_mm);
-  // All fragments of a wave must have the same phase, so the path must not depend on the polygon of the beam.
+  // Fragments of one wave must have consistent phases. The path is therefore computed for a fixed point and not for the
+  // centre of the beam's polygon.
   const Vec2 exit = -beam.centre_mm;
   of.path_mm = (beam.phase_mm + beam.direction.head<2>().dot(exit) +
                 scene.to_source.head<2>().dot(beam.entry_from_exit * exit)) /
@@ -395,10 +396,10 @@ Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, 
   return of;
 }
 
-/// Moves the polygon through which a beam leaves to the points where rays through the curved surface leave. After the
-/// length L of a path in the part, a ray is displaced by L grad phi / n, measured perpendicular to the light. The rim
-/// of the element bounds the beam, and the displacement at the rim is already part of the entry region. The power of
-/// the beam does not change. Therefore, its amplitude is multiplied by the square root of the ratio of the areas.
+/// Moves the exit polygon of a beam to the points where rays behind the curved surface leave. A path of the length L in
+/// the part displaces a ray by L grad phi / n, measured perpendicular to the light. The displacement up to the rim of
+/// the element is already included in the entry region. The remaining displacement changes the area of the polygon but
+/// not the power. The amplitude is therefore multiplied by the square root of the old area divided by the new area.
 void move_exit(const ElementScene& scene, const Convergence& convergence, ReturnedBeam& beam) {
   const double length_mm = convergence.path_mm - scene.rim_path_mm;
   const Vec2 across = beam.direction.head<2>() / beam.index;
@@ -448,7 +449,7 @@ BeamResult trace_element(const ElementScene& scene, const Optics& optics, const 
     for (ShellSurface* const surface : {&shell.outer, &shell.inner}) surface->normal = scene.direction(surface->normal);
   const BeamTracer tracer(excerpt.part);
   return tracer.trace(own_optics, illumination, cones_deg, policy, cancel, [&](const ReturnedBeam& beam) {
-    // Light that met no cell has been reflected only by the sides and the entrance face.
+    // Light that met no cell is ignored. It has only been reflected by sides and by the entrance face.
     if (beam.depth == 0 || !beam.trail.first) return;
     ReturnedBeam curved = beam;
     add_surface(scene, curved);

@@ -34,10 +34,10 @@ struct ElementScene {
   SurfaceSag sag;
   surface_models::FacetForm squared_slope;  ///< see squared_slope(), for the light that enters
   Vec3 to_source = Vec3::UnitZ();           ///< in the frame of the excerpt
-  /// Portion of the element, displaced to the points where its light would enter through the tangent plane; see
-  /// ElementPortion and entry_displacement().
+  /// Portion of the element (ElementPortion). Its points are displaced to the points at which the same light would
+  /// enter through the tangent plane (entry_displacement()).
   geometry::Polygon portion_mm;
-  double rim_path_mm = 0.0;  ///< length of the light's path inside the part from the tangent plane to the element's rim
+  double rim_path_mm = 0.0;  ///< length of the light's path from the tangent plane to the element's rim
   double fraction = 0.0;     ///< see ElementPortion::fraction
   /// Factor by which powers of beams in the excerpt are multiplied to obtain fractions of the light that is incident on
   /// the part.
@@ -107,11 +107,12 @@ class ElementLight {
 Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, const Stokes& stokes);
 
 /// Traces the light of one element and passes its returned beams to the observer. A beam belongs to the element if the
-/// first facet that it met is a facet of this element. If the beam first met something other than an element, it
-/// belongs to the element if it entered through ElementScene::portion_mm (ExcerptLight). Light that the outer side of
-/// the surface reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are
-/// fractions of the light that is incident on the excerpt, see ElementScene::power_factor. \param optics shells must
-/// not deflect light \param policy policy for the beams; BeamPolicy::excerpt is ignored
+/// first facet that it met is a facet of this element. A beam that first met something other than an element belongs to
+/// the element through whose ElementScene::portion_mm it entered (ExcerptLight). Light that the outer side of the
+/// surface reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are
+/// fractions of the light that is incident on the excerpt, see ElementScene::power_factor.
+/// \param optics optical properties; shells must not deflect light
+/// \param policy policy for the beams; BeamPolicy::excerpt is ignored
 BeamResult trace_element(const ElementScene& scene, const Optics& optics, const Illumination& illumination,
                          const std::vector<double>& cones_deg, BeamPolicy policy, const Cancellation* cancel,
                          const BeamObserver& observer);

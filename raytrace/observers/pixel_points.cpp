@@ -6,21 +6,22 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of pixels on each side of a pixel over which the variance is averaged. A single pixel has too few training
-// samples.
+// Number of neighbouring pixels on each side that are included in the mean variance of a pixel. The training samples of
+// a single pixel are too few.
 constexpr std::size_t kAveragedPixels = 2;
-// Number of additional points in a pass, divided by the number of points that are distributed evenly.
+// Ratio of the points for noisy pixels to the evenly distributed points of a pass.
 constexpr double kAdditionalPoints = 1.7;
-// Exponent of the standard deviation to which the number of additional points is proportional. The noise of a picture
-// is the sum of the standard errors s / sqrt(N) of its pixels. For a given total of N, it is minimal if N is
-// proportional to s to the power of 2/3.
+// Exponent e of the standard deviation s: the number of additional points of a pixel is proportional to s^e. The noise
+// of a picture is the sum of the standard errors s / sqrt(N) of its pixels. For a given total number of points, the
+// noise is minimal for e = 2/3.
 constexpr double kExponent = 2.0 / 3.0;
-// Maximum number of points of a pixel, divided by the minimum number.
+// Ratio of the maximum to the minimum number of points of a pixel.
 constexpr double kMaxRatio = 64.0;
-// Minimum reduction of the variance for which the numbers of points differ.
+// Minimum factor by which the variance must decrease. Otherwise, all pixels have the same number of points.
 constexpr double kMinGain = 2.0;
 
-/// Returns the standard deviation of a point of each pixel, averaged over the pixels around it.
+/// Returns the standard deviation of a single sample for each pixel. The variance is averaged over the neighbouring
+/// pixels.
 std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::uint32_t samples,
                                   std::size_t columns) {
   const std::size_t rows = moments.size() / columns;

@@ -23,20 +23,20 @@ struct PixelMoments {
 /// noisy. The noisy pixels then receive more points. The formula is derived in docs/theory/images.md.
 class PixelPoints {
  public:
-  /// Every pixel has the same number of points.
+  /// Assigns the same number of points to every pixel.
   /// \param points number of points per pixel
   PixelPoints(std::size_t pixels, std::uint32_t points)
       : points_(pixels, points), total_(std::uint64_t{pixels} * points) {}
 
-  /// Chooses the numbers from training samples. All numbers are `min_points` times a power of two. If this reduces the
-  /// variance by less than a factor of two at equal cost, all numbers are `min_points`.
+  /// Determines the number of points of each pixel from training samples. Each number is `min_points` times a power of
+  /// two. If the variance at equal cost decreases by less than a factor of two, every pixel has `min_points` points.
   /// \param moments moments of the training samples, row by row
   /// \param samples number of training samples per pixel; >= 2
   PixelPoints(const std::vector<PixelMoments>& moments, std::uint32_t samples, std::size_t columns,
               std::uint32_t min_points);
 
   std::uint32_t operator[](std::size_t pixel) const { return points_[pixel]; }
-  /// Returns the number of points of all pixels.
+  /// Returns the sum of the numbers of points over all pixels.
   std::uint64_t total() const { return total_; }
 
  private:

@@ -81,7 +81,7 @@ class Follower {
     return true;
   }
 
-  /// Adds the end of light at the chamfer of the face or, if it passes the chamfer, at the edge of the mount.
+  /// Ends the path at the chamfer of the face or, if the light passes the chamfer, at the edge of the mount.
   void stop(const Vec3& direction) {
     if (setup_.stops.is_clear(position_.head<2>()))
       position_ += (setup_.stops.top_mm() - position_.z()) / direction.z() * direction;
@@ -90,7 +90,7 @@ class Follower {
     is_done_ = true;
   }
 
-  /// Ends the path of light that does not reach the face.
+  /// Ends the path of light that is stopped before it reaches the face.
   LightPath stop_before_face() {
     stop(setup_.to_source);
     return std::move(path_);

@@ -190,9 +190,9 @@ std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const
       {state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
-/// Finds the next face inside a finite part: the nearest of the entrance, the back surface and the sides. A curved
-/// entrance face is searched after the back surface, and the sides are searched last, because most paths meet a nearer
-/// face first.
+/// Finds the next face inside a finite part: the entrance face, the back surface or a side, whichever is nearest. The
+/// back surface is tested first, then a curved entrance face, and the sides last. Most paths then need no later test,
+/// because they have already met a nearer face.
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
   double limit = kInfinity;
@@ -239,7 +239,7 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
   return step;
 }
 
-/// Returns the distance to the first side of a finite part, or `limit` if the path does not meet a side before.
+/// Returns the distance to the first side of a finite part, or `limit` if this distance is larger than `limit`.
 double PathWalker::reach_side(const State& state, double limit, Step& step) const {
   for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
     const double towards = setup_.sides[k].normal.dot(state.direction);

@@ -34,9 +34,9 @@ struct PathSetup : LightSetup {
   double middle_height_mm = 0.0;        ///< height of the entrance surface at the middle of the part, see Shell
   PathPolicy policy;
   Vec2 centre_mm = Vec2::Zero();  ///< origin of positions, in the part frame
-  double clearance_mm = 0.0;      ///< maximum z at which the back surface is searched
+  double clearance_mm = 0.0;      ///< maximum z at which rays are tested against the back surface
   Vec2 period_mm = Vec2::Zero();  ///< period of an infinite part
-  /// Half size of a rectangle around the origin that is inside all sides of a finite part.
+  /// Half size of a rectangle around the origin. The rectangle is inside all sides of a finite part.
   Vec2 inner_half_mm = Vec2::Zero();
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
   /// Convex polygons of the entrance face of a part with notches or holes, see Part::entrance_pieces.
@@ -47,8 +47,8 @@ struct PathSetup : LightSetup {
   double below_surface_mm() const {
     return -depth_mm - (entrance_pieces.empty() ? clearance_mm : clearance_mm - top_mm);
   }
-  /// Returns true if a position of a finite part is inside all sides, with a margin. A segment between two points that
-  /// are inside does not meet a side.
+  /// Returns true if a position is inside `inner_half_mm`, and therefore inside all sides of a finite part. A line
+  /// between two such positions does not meet a side.
   bool is_far_from_sides(const Vec3& position_mm) const {
     return std::abs(position_mm.x()) < inner_half_mm.x() && std::abs(position_mm.y()) < inner_half_mm.y();
   }
@@ -90,8 +90,8 @@ class PathWalker {
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
-  /// Place where the light of launch() first meets the part. `inside` means that the light starts in the part. `none`
-  /// means that the light meets only shells.
+  /// Surface at which the light of launch() first meets the part. `inside` means that the light starts in the part.
+  /// `none` means that the light meets only shells.
   enum class Arrival { none, entrance, side, back, inside };
   /// Returns the place where the light of the last call of launch() has met the part.
   /// \pre this call has returned true

@@ -14,7 +14,7 @@ namespace {
 
 using studies::Variant;
 
-// Values of Series::look for designs.
+// Values of Series::look for feasible, excluded and chosen designs.
 constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
 
 std::string title_of_study(const studies::Study& study) {
@@ -25,7 +25,8 @@ double number_of(const Variant& variant, std::size_t parameter) {
   return std::get<double>(variant.values[parameter].shown);
 }
 
-/// Returns the name of the objective, and the factor by which it is multiplied so that it is the given quantity.
+/// Returns a name and a factor for the plot of the objective. If the objective is a single quantity, the objective
+/// times the factor is this quantity.
 std::pair<std::string, double> shown_objective(const studies::OptimiseRequest& request) {
   const auto& weights = request.objective.weights;
   if (weights.size() != 1) return {"objective", 1.0};
@@ -42,7 +43,7 @@ std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std:
   return designs;
 }
 
-/// Returns the ranges of a parameter in which neighbouring designs are feasible. A range ends in the middle between a
+/// Returns the ranges of a parameter in which the evaluated designs are feasible. A range ends halfway between a
 /// feasible and an infeasible design.
 std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, std::size_t parameter) {
   std::vector<Range> ranges;
@@ -137,7 +138,7 @@ LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRe
     const auto k = static_cast<std::size_t>(found - study.quantities.begin());
     const double limit = constraint.max ? *constraint.max : *constraint.min;
     Series series{constraint.text(), {}, {}, {}};
-    // A quantity with the limit 0 is drawn as 1 + quantity, so that its limit is at 1 as well.
+    // A quantity with the limit 0 is drawn as 1 + quantity. Its limit is then also at 1.
     const double scale = limit != 0.0 ? 1.0 / limit : 1.0;
     const double shift = limit != 0.0 ? 0.0 : 1.0;
     for (const Variant* const design : designs) {

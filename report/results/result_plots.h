@@ -112,8 +112,8 @@ LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceReq
 LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                       const studies::Optimum& optimum);
 
-/// Returns a plot of all constrained quantities, divided by their limits, over the same parameter as optimum_plot().
-/// The limit is the line at 1.
+/// Returns a plot of all constrained quantities, divided by their limits, over the same parameter as in optimum_plot().
+/// A line at 1 shows the limits.
 /// \pre the request has a constraint
 LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                           const studies::Optimum& optimum);
@@ -127,12 +127,12 @@ MixturePlot composition_plot(const studies::Study& study, const studies::Compose
 /// spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 
-/// Returns maps of the cross section over the far field of the first point: all light and, if polarised light is sent,
-/// the light of both polarisations.
+/// Returns maps of the cross section over the far field of the first point. The first map shows all light. If the
+/// transmitted light is polarised, two more maps show both polarisations.
 /// \pre the result has a map
 ImagePlot ranging_map_plot(const studies::RangingResult& result);
-/// Returns a plot of the cross section over the angle from the direction to the source: the mean, the minimum and the
-/// maximum on rings.
+/// Returns a plot of the cross section as a function of the angle from the direction to the source. The curves are the
+/// mean, the minimum and the maximum on rings.
 /// \pre the result has a map
 LinePlot ranging_rings_plot(const studies::RangingResult& result);
 /// Returns a plot of the response of an array to a pulse.

@@ -40,8 +40,8 @@ struct ComposeRequest {
   double min_area_fraction = 0.0;  ///< minimum fraction of the area for a zone
   double max_area_fraction = 1.0;
   std::optional<std::size_t> max_zones;  ///< maximum number of zones; no limit if empty
-  /// Number of equal steps that make up the whole area. The fractions of the best part are whole numbers of steps.
-  /// Empty: the fractions are not rounded.
+  /// Number of equal steps into which the whole area is divided. The area fractions of the best part are multiples of
+  /// one step. Empty: the fractions are not rounded.
   std::optional<std::size_t> area_steps;
   std::size_t scan = 65;           ///< number of cells of the first scan, per combination of discrete values
   std::size_t rounds = 4;          ///< maximum number of searches with dual prices
@@ -146,7 +146,8 @@ compute::StoreLayout compose_layout(const Study& study);
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
 /// Chooses the best part from the cells that an interrupted search has evaluated, and from all other cells in the
-/// store. \pre compose() has returned an incomplete composition
+/// store.
+/// \pre compose() has returned an incomplete composition
 void choose_best_so_far(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
                         Composition& composition);
 
@@ -154,7 +155,7 @@ void choose_best_so_far(const Study& study, const ComposeRequest& request, compu
 /// improves the best cells of the scan. Then cells are added that improve the mixture according to the dual prices of
 /// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
 /// already in the store are not computed again, and the result is the same. An interrupted search returns its catalogue
-/// of cells, without a part. `observer` receives the best part of one kind of cell.
+/// of cells, without a part. `observer` receives the best part so far that consists of one kind of cell.
 /// \throw OutputError under the same conditions as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
                     OptimiseObserver* observer, const Cancellation* cancel);

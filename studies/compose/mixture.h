@@ -75,8 +75,9 @@ Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& ru
 
 /// Returns a mixture of the same cells whose fractions are multiples of a step. Each fraction is the multiple below or
 /// above the given fraction. Among all such mixtures that satisfy the rules, the one with the largest merit is
-/// returned. Returns `mixture` if there is none. Bound and prices remain those of `mixture`. \param steps number of
-/// steps that make up the whole area \pre the mixture is feasible
+/// returned. Returns `mixture` if there is no such mixture. The bound and the prices of `mixture` are not changed.
+/// \param steps number of steps that make up the whole area
+/// \pre the mixture is feasible
 Mixture rounded_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Mixture& mixture,
                         std::size_t steps);
 

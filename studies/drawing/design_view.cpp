@@ -104,8 +104,8 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
 /// Number of cells of the grid along the longer side of a part with which its curved entrance face is drawn.
 constexpr int kEntranceCells = 220;
 
-/// Returns the lower borders of the sides of a part, as lines from vertex to vertex of its back surface. If the part
-/// has a plane back without such borders, the result is its outline on z = 0.
+/// Returns the lower borders of the sides of a part, as lines from vertex to vertex of its back surface. A plane back
+/// has no such borders. The result is then the outline of the part on z = 0.
 std::vector<std::vector<Vec3>> lower_borders_of_sides(const Part& part) {
   std::vector<std::vector<Vec3>> borders;
   for (const geometry::Placement& placement : part.placements) {
@@ -137,8 +137,8 @@ bool is_sharp_corner(const geometry::Polygon& outline, const Vec2& point) {
   return false;
 }
 
-/// Appends the side of a part above one line of its lower border. The side is divided into strips that are at most
-/// `cell_mm` wide.
+/// Appends the polygons of a side of a part, above one line of its lower border. The side is divided into strips that
+/// are at most `cell_mm` wide.
 /// \param above function that returns the point of the entrance face above a point of the plan
 template <class Above>
 void add_side(DesignView& view, const Vec3& from, const Vec3& to, double cell_mm, const Above& above) {

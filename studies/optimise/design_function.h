@@ -1,6 +1,6 @@
 #pragma once
 
-// The designs of a study as points of a search. Internal to studies/optimise.
+// Maps the designs of a study to the points of a search. Internal to studies/optimise.
 
 #include <cstddef>
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace retrace::studies {
 
-/// Designs of the first scan, and designs between them.
+/// Designs of the first scan. Also converts between designs and positions in the intervals of their parameters.
 class Scan {
  public:
   /// \throw InputError for too many combinations of discrete values
@@ -23,18 +23,20 @@ class Scan {
   const std::vector<std::size_t>& continuous() const { return continuous_; }
   /// Returns all combinations of discrete values. Continuous parameters are set to the middle of their intervals.
   const std::vector<PointValues>& combinations() const { return combinations_; }
-  /// Returns a design with other values of its continuous parameters.
+  /// Replaces the values of the continuous parameters of a design and returns the new design.
   /// \param fractions positions in the intervals
   PointValues with(PointValues design, const std::vector<double>& fractions) const;
   /// Returns the positions of the continuous parameters of a design in their intervals.
   std::vector<double> fractions_of(const PointValues& design) const;
   /// Returns the designs of the scan for one combination of discrete values, without duplicates. For one continuous
-  /// parameter, they are equally spaced. For several, they are the corners of the intervals and Sobol points. A size
-  /// of prisms is replaced by the nearest size that divides the part, if there is one within half a step of the scan.
+  /// parameter, the designs are equally spaced. For several continuous parameters, the designs are the corners of the
+  /// intervals and Sobol points. Sizes of prisms are moved by up to half a step of the scan if a whole number of
+  /// elements then fills the part.
   std::vector<PointValues> of(std::size_t combination) const;
-  /// Returns the distance of neighbouring points of the scan.
+  /// Returns the distance between neighbouring points of the scan, as a fraction of the interval.
   double spacing() const { return 1.0 / static_cast<double>(request_.scan - 1); }
-  /// Returns the sizes that divide the part, for the continuous parameter with index `k` in continuous().
+  /// Returns the sizes for which a whole number of elements fills the part. `k` is the index of the parameter in
+  /// continuous().
   const WholeSizes& whole_sizes(std::size_t combination, std::size_t k) const;
 
  private:
@@ -47,7 +49,8 @@ class Scan {
   mutable std::map<std::size_t, std::vector<WholeSizes>> whole_sizes_;
 };
 
-/// Returns true if quantities of the study may have random errors, judged by the engine and the first design.
+/// Returns true if quantities of the study may have random errors. The decision uses the engine and the first design of
+/// the study.
 bool may_be_noisy(const Study& study);
 
 /// The objective and the constraints of a study as a function that search_with_noise() maximizes.

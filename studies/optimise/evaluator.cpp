@@ -59,7 +59,7 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
   }
 }
 
-/// Returns the study with which designs are computed at a level of accuracy.
+/// Returns the study with its analysis settings adapted to a level of accuracy.
 const Study& Evaluator::study_at(const ErrorLevel& level) {
   if (!request_.has_levels) return study_;
   const auto found = studies_.find(level);
@@ -123,7 +123,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   });
   bool is_interrupted = is_cancelled(cancel_);
   for (std::size_t k = 0; k < open.size(); ++k) {
-    // An interruption loses no finished design: all of them are kept before the search ends.
+    // If the search is interrupted, all finished designs are stored before the search ends.
     is_interrupted = is_interrupted || !points[k];
     if (!points[k]) continue;
     if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
@@ -135,7 +135,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   return found;
 }
 
-/// Adds a result to the results of a design.
+/// Adds a stored point to the results of a design at a level of accuracy.
 void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const compute::StoredPoint& point) {
   const std::string key = key_of(design);
   std::map<ErrorLevel, Variant>& results = by_level_[key];
@@ -151,7 +151,7 @@ void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const c
   evaluated_[at->second].number = number;
 }
 
-/// Returns the mean of the results with the smallest error.
+/// Returns the mean of the results with the smallest target error.
 Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   Variant mean = results.begin()->second;
   std::size_t count = 0;
@@ -176,7 +176,7 @@ Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   return mean;
 }
 
-/// Reports a design to the observer if it is better than all designs before.
+/// Reports a design to the observer if it is better than all designs that were reported before.
 void Evaluator::report_best(const Variant& variant) {
   if (!variant.feasible()) return;
   const double value = *variant.objective - 2.0 * variant.objective_error;
@@ -238,7 +238,8 @@ void Evaluator::check_constraints(Variant& variant) const {
   variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
-  // All terms may use the same random numbers. Therefore their errors are correlated and are added linearly.
+  // All terms of the objective may use the same random numbers. Their errors are then correlated and are therefore
+  // added linearly.
   double sum_of_errors = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double error_of_least = 0.0;

@@ -31,7 +31,7 @@ class Evaluator {
   }
   /// Adds the designs of the store that this search has not evaluated.
   void add_stored();
-  /// Returns the most accurate result of an evaluated design. It is the mean of the results with the smallest error.
+  /// Returns the most accurate result of an evaluated design: the mean of its results with the smallest target error.
   const Variant& most_accurate(const PointValues& design) const { return evaluated_[numbers_.at(key_of(design))]; }
   /// Returns the number of results. A design that was evaluated at several levels has several results.
   std::size_t results() const { return results_; }
@@ -69,14 +69,14 @@ class Evaluator {
   compute::ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  /// Index in `evaluated_` of each evaluated design; the key is a text of its parameter values.
+  /// Index in `evaluated_` of each evaluated design. The key is a string that contains the parameter values.
   std::map<std::string, std::size_t> numbers_;
-  /// Points of an earlier run. The key is a text of the parameter values and the level.
+  /// Points of an earlier run. The key is a string that contains the parameter values and the level.
   std::map<std::string, compute::StoredPoint> stored_;
-  std::map<ErrorLevel, Study> studies_;  ///< the study at each level
-  /// Results of each design at all levels; the key is a text of its parameter values.
+  std::map<ErrorLevel, Study> studies_;  ///< study for each level of accuracy
+  /// Results of each design at all levels. The key is a string that contains the parameter values.
   std::map<std::string, std::map<ErrorLevel, Variant>> by_level_;
-  std::optional<double> best_value_;  ///< value by which the best design was compared, see OptimiseObserver::at_best()
+  std::optional<double> best_value_;  ///< compared value of the best design, see OptimiseObserver::at_best()
   std::size_t results_ = 0;
   std::vector<Variant> evaluated_;
   std::set<std::uint64_t> used_numbers_;  ///< numbers of the points in the store

@@ -1,6 +1,6 @@
 #pragma once
 
-// Chooses the parameters over which the result of an optimization is drawn.
+// Chooses the parameters that become the axes of the plots of an optimization.
 
 #include <cstddef>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace retrace::studies {
 
-/// Returns the parameters that explain most of the variation of the objective over all evaluated designs, the most
-/// important first. Returns at most two. Parameters whose values are not numbers are omitted. Only one parameter is
-/// returned if the study has only one continuous parameter.
+/// Returns one or two parameters that explain most of the variation of the objective over all evaluated designs. The
+/// most important parameter comes first. Parameters whose values are not numbers are omitted. If the study has a single
+/// continuous parameter, a single parameter is returned.
 std::vector<std::size_t> important_parameters(const Study& study, const Optimum& optimum);
 
 }  // namespace retrace::studies

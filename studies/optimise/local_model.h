@@ -1,7 +1,7 @@
 #pragma once
 
-// Quadratic models of an objective and its limits near a point, fitted to observations with random errors. Internal to
-// studies/optimise.
+// Quadratic polynomials that approximate an objective and its constraints near a point. They are fitted to observations
+// with random errors. Internal to studies/optimise.
 
 #include <cstddef>
 #include <optional>
@@ -19,7 +19,7 @@ struct SearchBox {
   bool contains(const std::vector<double>& at) const;
 };
 
-/// Value at a position, as input of a fit.
+/// Value of a function at a position, as input of a fit.
 struct FittedValue {
   std::vector<double> at;
   Estimate estimate;
@@ -30,13 +30,15 @@ class LocalModel {
  public:
   /// Returns the number of coefficients of a quadratic polynomial.
   static std::size_t coefficients(std::size_t dimensions);
-  /// Fits a polynomial. It is linear, or only a constant, if there are not enough values for more coefficients.
+  /// Fits a polynomial. If there are not enough values for a quadratic polynomial, the polynomial is linear or
+  /// constant.
   /// \param values values inside the box; at least one
   LocalModel(const SearchBox& box, const std::vector<FittedValue>& values);
 
   double at(const std::vector<double>& position) const;
-  /// Returns the standard deviation of the fitted values from the model, in standard errors of these values. It is
-  /// about 1 if the model is accurate. It is infinite without degrees of freedom, or if a value has no error.
+  /// Returns the root mean square of the differences between values and model, each divided by the standard error of
+  /// the value. The result is about 1 if the model is accurate. The result is infinite if there are no degrees of
+  /// freedom or if a value has no error.
   double deviation() const { return deviation_; }
 
  private:
@@ -47,9 +49,9 @@ class LocalModel {
   double deviation_ = 0.0;
 };
 
-/// Returns the position in the box at which a model is largest and all limits are at most 0. Returns nothing if the
-/// search finds no such position.
-/// \param limits models of the limits
+/// Returns the position in the box at which `model` is largest and all models in `limits` are at most 0. Returns
+/// nothing if the search finds no such position.
+/// \param limits models of the amounts by which constrained quantities exceed their limits (Observation::excess)
 /// \param from first position of the search
 std::optional<std::vector<double>> model_maximum(const SearchBox& box, const LocalModel& model,
                                                  const std::vector<LocalModel>& limits,

@@ -12,38 +12,39 @@
 namespace retrace::studies {
 namespace {
 
-/// Number of standard errors of an interval with a confidence of 95 %.
+/// Half width of a confidence interval of 95 %, in standard errors.
 constexpr double kInterval = 1.96;
 /// Maximum loss by rounding, as a multiple of the standard error of the difference between the compared points.
 constexpr double kRoundingErrors = 1.5;
-/// Initial half of the side length of the box in which models are fitted, as a multiple of the distance of
-/// neighbouring points of the scan.
+/// Initial SearchBox::radius for the fit of models, as a multiple of the distance between neighbouring points of the
+/// scan.
 constexpr double kFirstBox = 3.5;
-/// Maximum change of a value by rounding, as a multiple of the distance of neighbouring points of the scan.
+/// Maximum change of a value by rounding, as a multiple of the distance between neighbouring points of the scan.
 constexpr double kRoundingBox = 1.5;
 constexpr double kSmallestBox = 1e-8;
 /// Maximum LocalModel::deviation() of a model that is regarded as accurate.
 constexpr double kAdequate = 1.3;
-/// Minimum range of the objective in a box that is made smaller, as a multiple of the standard error.
+/// A box is made smaller only if the range of the objective in it exceeds this multiple of the standard error.
 constexpr double kBoxErrors = 6.0;
 /// Gain of the objective below which a search without random errors ends, as a fraction of the objective.
 constexpr double kSmallestGain = 1e-9;
-/// Maximum number of points with possible peaks that are observed near a start.
+/// Maximum number of points of SearchedFunction::peaks_near() that are observed near a start.
 constexpr std::size_t kMaxPeaks = 6;
-/// Maximum distance of these points from the start, as a multiple of the distance of neighbouring points of the scan.
+/// Maximum distance between a start and the points of peaks_near(), as a multiple of the distance between neighbouring
+/// points of the scan.
 constexpr double kPeakBox = 3.0;
-/// Maximum number of points of the scan that are observed again in each combination.
+/// Maximum number of scan points per combination of discrete values that are observed again with a smaller error.
 constexpr std::size_t kMaxContenders = 5;
-/// Maximum number of rounder points that are observed.
+/// Maximum number of points with rounder values that are observed.
 constexpr std::size_t kMaxRounder = 6;
-/// Maximum number of rounder points that are compared with the smallest error.
+/// Maximum number of points with rounder values that are observed with the smallest error.
 constexpr std::size_t kMaxCompared = 3;
 
 double square(double x) {
   return x * x;
 }
 
-/// Search for the maximum of a function, with all observations.
+/// Search for the maximum of a function. It stores all observations.
 class NoisySearch {
  public:
   NoisySearch(SearchedFunction& function, const NoisySearchSettings& settings)
@@ -53,8 +54,8 @@ class NoisySearch {
     std::vector<SearchPoint> all;
     for (const auto& points : scan) all.insert(all.end(), points.begin(), points.end());
     observe(all, {settings_.scan_scale, 0});
-    // Repeated scans find the part of the range that holds the best points. Only points whose difference to the best
-    // point is below the error are observed again.
+    // Each start is the best scan point of a combination of discrete values. refine() first repeats the scan points
+    // that the errors do not distinguish from this point.
     for (const SearchPoint& start : starts(scan)) refine(start);
     NoisyOptimum optimum;
     std::optional<SearchPoint> best = compare(finalists());
@@ -73,7 +74,7 @@ class NoisySearch {
  private:
   using Level = ErrorLevel;
 
-  /// Observes points at a level, unless they have been observed at this level.
+  /// Observes points at a level of accuracy. Points that have been observed at this level are skipped.
   void observe(const std::vector<SearchPoint>& points, Level level) {
     std::vector<SearchTrial> trials;
     std::set<SearchPoint> added;
@@ -90,7 +91,7 @@ class NoisySearch {
     }
   }
 
-  /// Returns the most accurate observations of a point. They have the smallest error scale and different replicates.
+  /// Returns the most accurate observations of a point: all replicates with its smallest ErrorLevel::scale.
   std::vector<const Observation*> best_seen(const SearchPoint& point) const {
     std::vector<const Observation*> found;
     const auto at = known_.find(point);
@@ -100,7 +101,7 @@ class NoisySearch {
     return found;
   }
 
-  /// Returns the mean of the most accurate observations of the objective.
+  /// Returns the mean of the objective over the most accurate observations of a point.
   std::optional<Estimate> estimate(const SearchPoint& point) const {
     Estimate mean;
     const std::vector<const Observation*> seen = best_seen(point);
@@ -114,7 +115,7 @@ class NoisySearch {
     return Estimate{mean.value / count, std::sqrt(mean.std_error) / count};
   }
 
-  /// Returns the mean by which a limit is exceeded in the most accurate observations.
+  /// Returns the mean of Observation::excess for one limit over the most accurate observations of a point.
   Estimate excess(const SearchPoint& point, std::size_t limit) const {
     Estimate mean;
     const std::vector<const Observation*> seen = best_seen(point);
@@ -139,8 +140,8 @@ class NoisySearch {
     return true;
   }
 
-  /// Returns the value by which points with different errors are ranked. It is lower than the estimate, so that a point
-  /// with a large error is not preferred because of its error.
+  /// Returns the value for the ranking of points with different errors: the estimate minus its standard error. A point
+  /// is therefore not preferred only because its error is large.
   double cautious_value(const SearchPoint& point) const {
     const Estimate value = *estimate(point);
     return value.value - value.std_error;
@@ -160,8 +161,7 @@ class NoisySearch {
     return best;
   }
 
-  /// Returns the best points of the best combinations. A combination whose best point is certainly worse than the best
-  /// point of another combination is omitted.
+  /// Returns the best scan point of each of the best combinations of discrete values.
   std::vector<SearchPoint> starts(const std::vector<std::vector<SearchPoint>>& scan) const {
     std::vector<SearchPoint> found;
     for (const auto& points : scan)
@@ -187,7 +187,7 @@ class NoisySearch {
     return found;
   }
 
-  /// Observes points along the axes until the box has enough points for a quadratic model.
+  /// Observes points along the axes and diagonals of a box until the box has enough points for a quadratic model.
   void fill(std::size_t combination, const SearchBox& box) {
     const std::size_t dimensions = box.centre.size();
     const std::size_t needed = LocalModel::coefficients(dimensions) + (has_noise_ ? dimensions : 0);
@@ -198,7 +198,7 @@ class NoisySearch {
       SearchPoint point{combination, box.centre};
       for (std::size_t k = 0; k < dimensions; ++k) {
         const double at = box.centre[k] + steps[k] * box.radius;
-        // A step beyond the interval is made in the opposite direction.
+        // If a step leaves the interval, the opposite step is used.
         point.fractions[k] = at < 0.0 || at > 1.0 ? std::clamp(box.centre[k] - steps[k] * box.radius, 0.0, 1.0) : at;
       }
       if (function_.is_allowed(point) || dimensions > 1) added.push_back(point);
@@ -225,7 +225,8 @@ class NoisySearch {
     return {box, values};
   }
 
-  /// Returns models of the limits. Values of a limit are omitted where the limited quantity has no value.
+  /// Returns one model for each limit. The model approximates the amount by which the limit is exceeded. Points at
+  /// which the limited quantity has no value are omitted.
   std::vector<LocalModel> limit_models(const SearchBox& box, const std::vector<SearchPoint>& points) const {
     std::vector<LocalModel> models;
     for (std::size_t k = 0; k < limits(); ++k) {
@@ -238,7 +239,8 @@ class NoisySearch {
     return models;
   }
 
-  /// Returns the point nearest to `point`, on the line to the allowed point `from`, that is allowed.
+  /// Returns the allowed point that is nearest to `point` on the line from `from` to `point`.
+  /// \pre `from` is allowed
   SearchPoint pulled_back(const SearchPoint& from, const SearchPoint& point) const {
     if (function_.is_allowed(point)) return point;
     double good = 0.0;
@@ -256,12 +258,13 @@ class NoisySearch {
     return nearest;
   }
 
-  /// Refines the continuous positions of a point.
+  /// Improves the continuous parameters of a point by repeated fits of a quadratic model.
   void refine(const SearchPoint& start) {
     if (start.fractions.empty()) return;
     SearchPoint centre = best_peak(best_contender(start));
     const auto dimensions = static_cast<double>(centre.fractions.size());
-    // In one dimension, the box contains the nearest points of the scan. In several dimensions, the scan is sparser.
+    // In one dimension, the box contains the nearest points of the scan. In several dimensions, scan points are farther
+    // apart, so the box is larger.
     double radius =
         dimensions > 1.0 ? 0.5 * std::pow(settings_.spacing * 12.0, 1.0 / dimensions) : kFirstBox * settings_.spacing;
     int quiet = 0;
@@ -277,7 +280,7 @@ class NoisySearch {
       observe({proposal}, refinement_level());
       const SearchPoint before = centre;
       const double noise = mean_error(points);
-      // A model that fits all points within their errors is more accurate than each point.
+      // If a model fits all points within their errors, the model is more accurate than a single observation.
       const bool is_adequate = has_noise_ && model.deviation() < kAdequate;
       if (is_adequate) last_model_.emplace(AdequateModel{box, model, centre.combination});
       if (is_feasible(proposal)) {
@@ -291,20 +294,21 @@ class NoisySearch {
       const double spread = range_of(model, box);
       quiet = std::abs(gain) < tolerance(centre) && (is_adequate || moved < 0.1 * radius) ? quiet + 1 : 0;
       if (quiet >= (is_adequate && iteration > 0 ? 1 : 2) || (iteration > 0 && spread < tolerance(centre))) break;
-      // In a small box, all differences are below the errors. The box then stays large enough for an accurate model.
+      // In a very small box, all differences would be below the errors. The box is therefore made smaller only while
+      // the differences exceed the errors.
       if ((moved < 0.7 * radius || centre == before) && spread > kBoxErrors * noise) radius *= has_noise_ ? 0.6 : 0.35;
     }
   }
 
-  /// Returns the root mean square of the standard errors of points.
+  /// Returns the root mean square of the standard errors of the objective at several points.
   double mean_error(const std::vector<SearchPoint>& points) const {
     double squares = 0.0;
     for (const SearchPoint& point : points) squares += square(estimate(point)->std_error);
     return std::sqrt(squares / static_cast<double>(points.size()));
   }
 
-  /// Returns the difference between the largest and the smallest value of a model at the centre and on the axes of a
-  /// box.
+  /// Evaluates a model at the centre of a box and at the ends of the box's axes. Returns the difference between the
+  /// largest and the smallest value.
   static double range_of(const LocalModel& model, const SearchBox& box) {
     double low = model.at(box.centre);
     double high = low;
@@ -318,11 +322,12 @@ class NoisySearch {
     return high - low;
   }
 
-  /// Returns the difference of the objective below which the search does not distinguish points.
+  /// Returns the smallest difference of the objective that the search distinguishes.
   double tolerance(const SearchPoint& point) const {
     const Estimate here = *estimate(point);
     if (!has_noise_) return kSmallestGain * std::abs(here.value);
-    // The last comparison has a smaller error than the observation of this point.
+    // The tolerance is the error of an observation with the scale 1. The error of the refinement would be too large,
+    // because the last comparison distinguishes smaller differences.
     const double scale = known_.at(point).begin()->first.scale;
     return here.std_error / scale;
   }
@@ -333,8 +338,8 @@ class NoisySearch {
     return max;
   }
 
-  /// Observes the points of a combination that the errors of the scan do not distinguish from its best point. Returns
-  /// the best point.
+  /// Observes the scan points whose difference from `start` is below the errors of the scan. `start` is the best scan
+  /// point of its combination of discrete values. Returns the best point after these observations.
   SearchPoint best_contender(const SearchPoint& start) {
     std::vector<SearchPoint> contenders;
     const Estimate best = *estimate(start);
@@ -352,7 +357,8 @@ class NoisySearch {
     return best_of(contenders).value_or(start);
   }
 
-  /// Observes the points near a start at which the objective may have a peak. Returns the best point.
+  /// Observes the points near `start` at which the objective may have a peak. Returns the best point, which may be
+  /// `start`.
   SearchPoint best_peak(const SearchPoint& start) {
     std::vector<SearchPoint> peaks = function_.peaks_near(start, kPeakBox * settings_.spacing);
     std::erase_if(peaks, [&](const SearchPoint& peak) { return !function_.is_allowed(peak); });
@@ -364,8 +370,8 @@ class NoisySearch {
     return best_of(peaks).value_or(start);
   }
 
-  /// Returns the points of the last comparison: the best points by their observed values, and the last maxima of
-  /// models.
+  /// Returns the points for the last comparison: the points with the best observed values, and the last maximum of a
+  /// model.
   std::vector<SearchPoint> finalists() const {
     std::vector<SearchPoint> ranked = feasible_points();
     std::ranges::stable_sort(
@@ -393,14 +399,15 @@ class NoisySearch {
       observe(points, {settings_.last_scale, replicate});
   }
 
-  /// Compares points with the smallest error and returns the best one.
+  /// Observes points with the smallest error, compares the results, and returns the best point.
   std::optional<SearchPoint> compare(const std::vector<SearchPoint>& points) {
     observe_at_last(points);
     std::optional<SearchPoint> best;
     for (const SearchPoint& point : points)
       if (is_feasible(point) && (!best || estimate(point)->value > estimate(*best)->value)) best = point;
     if (best || points.empty()) return best;
-    // Noisy limits: none of the finalists satisfies them. The next candidates are compared one by one.
+    // With their smaller errors, none of the points satisfies the limits. The next candidates are therefore observed
+    // one by one.
     std::vector<SearchPoint> others = feasible_points();
     std::ranges::stable_sort(
         others, [&](const SearchPoint& a, const SearchPoint& b) { return cautious_value(a) > cautious_value(b); });
@@ -422,7 +429,8 @@ class NoisySearch {
     return paired_difference(of_a, of_b);
   }
 
-  /// Returns true if an accurate model predicts that a point is worse than `best` by more than the errors.
+  /// Returns true if an accurate model predicts that a point is worse than `best`, and the predicted loss exceeds the
+  /// error.
   bool is_predicted_worse(const SearchPoint& point, const SearchPoint& best) const {
     if (!last_model_ || last_model_->combination != point.combination || !last_model_->box.contains(point.fractions) ||
         !last_model_->box.contains(best.fractions))
@@ -431,7 +439,7 @@ class NoisySearch {
     return loss > kInterval * std::sqrt(2.0) * estimate(best)->std_error;
   }
 
-  /// Returns the roundest point whose objective cannot be distinguished from that of `best`.
+  /// Returns the point with the fewest digits whose objective cannot be distinguished from the objective of `best`.
   SearchPoint rounded(const SearchPoint& best) {
     if (best.fractions.empty()) return best;
     std::size_t observed = 0;
@@ -459,7 +467,7 @@ class NoisySearch {
     return best;
   }
 
-  /// \param precise best point before rounding
+  /// \param best point before rounding
   double resolution(const SearchPoint& precise, const SearchPoint& chosen) const {
     if (!has_noise_) return 0.0;
     const Estimate here = *estimate(chosen);
@@ -469,7 +477,7 @@ class NoisySearch {
 
   SearchedFunction& function_;
   const NoisySearchSettings& settings_;
-  /// Observations of each point, the most accurate first.
+  /// Observations of each point. The most accurate observation comes first.
   std::map<SearchPoint, std::map<Level, Observation>> known_;
   /// Model that fits all points in a box within their errors.
   struct AdequateModel {
@@ -497,10 +505,11 @@ Estimate paired_difference(const std::vector<Estimate>& a, const std::vector<Est
   if (a.size() < 3) return difference;
   double squares = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) squares += square(a[k].value - b[k].value - difference.value);
-  // The spread of few differences is uncertain. Student's t distribution includes this uncertainty.
+  // The standard deviation of a few differences is uncertain. Student's t distribution takes this uncertainty into
+  // account.
   const double student = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) / kInterval;
   const double paired = student * std::sqrt(squares / (count - 1.0) / count);
-  // Common random numbers can only make the difference more accurate.
+  // With common random numbers, a difference is at least as accurate as a difference of independent values.
   difference.std_error = std::min(difference.std_error, paired);
   return difference;
 }

@@ -25,13 +25,14 @@ constexpr double kNearlyAsGood = 0.01;
 /// Minimum gain for which a cheaper design is proposed. It is measured on the axis of the Pareto front, as a fraction
 /// of the best design's value on this axis.
 constexpr double kWorthIt = 1e-3;
-/// Error of the first scan if quantities have random errors, as a multiple of the target error of the study.
+/// Target error of the first scan if quantities have random errors, as a multiple of the target error of the study.
 constexpr double kScanScale = 16.0;
-/// Distance of designs that divide the part from the best design of the scan, as a multiple of the scan's spacing.
+/// Maximum distance between the best design of the scan and the designs of best_peak(), as a multiple of the scan's
+/// spacing.
 constexpr double kPeakBox = 3.0;
-/// Maximum number of these designs.
+/// Maximum number of designs that best_peak() evaluates.
 constexpr std::size_t kMaxPeaks = 6;
-/// Range in which values are rounded, as a multiple of the scan's spacing.
+/// Maximum change of a value by rounding, as a multiple of the scan's spacing.
 constexpr double kRoundingBox = 1.5;
 constexpr const char* kStoreKind = "retrace.optimum/2";
 constexpr const char* kLevelInputs[] = {"error_scale", "replicate"};
@@ -55,7 +56,7 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// Returns the error of the first scan as a multiple of the target error of the study.
+/// Returns the target error of the first scan, as a multiple of the target error of the study.
 double scan_scale(const Study& study, const OptimiseRequest& request) {
   return request.has_levels && may_be_noisy(study) ? kScanScale : 1.0;
 }
@@ -170,7 +171,7 @@ class DesignSearch {
     return best ? std::optional(rounded(*best)) : std::nullopt;
   }
 
-  /// Returns the index of the combination of discrete values of a design.
+  /// Returns the index of the combination of discrete values that a design has.
   std::size_t combination_of(const PointValues& design) const {
     const auto is_same = [&](const PointValues& combination) {
       for (std::size_t k = 0; k < design.size(); ++k)
@@ -180,7 +181,8 @@ class DesignSearch {
     return static_cast<std::size_t>(std::ranges::find_if(scan_.combinations(), is_same) - scan_.combinations().begin());
   }
 
-  /// Evaluates the designs near a design whose elements divide the part. Returns the best design.
+  /// Evaluates designs near `start` whose element sizes are such that a whole number of elements fills the part.
+  /// Returns the best design, which may be `start`.
   Variant best_peak(std::size_t combination, const Variant& start) {
     const SearchPoint at{combination, scan_.fractions_of(start.values)};
     std::vector<SearchPoint> peaks = function_.peaks_near(at, kPeakBox * scan_.spacing());
@@ -221,8 +223,8 @@ class DesignSearch {
     }
   }
 
-  /// Returns the design with its parameters rounded to the roundest values that cause no significant loss of the
-  /// objective.
+  /// Returns the design after rounding its parameters. The rounded values have the fewest digits that cause no
+  /// significant loss of the objective.
   Variant rounded(const Variant& best) {
     if (continuous_.empty() || !request_.is_rounded) return best;
     const SearchPoint at{combination_of(best.values), scan_.fractions_of(best.values)};
@@ -257,7 +259,7 @@ class DesignSearch {
   DesignFunction function_;
   const std::vector<std::size_t>& continuous_;
   bool is_noisy_ = false;
-  double neighbour_scale_ = 1.0;  ///< ErrorLevel::scale with which neighbours of the best design are computed
+  double neighbour_scale_ = 1.0;  ///< ErrorLevel::scale for the neighbours of the best design
 };
 
 /// Returns a text that explains why a design was not chosen.
@@ -316,7 +318,7 @@ std::optional<std::vector<double>> merits(const Variant& variant, const Optimise
   for (const FrontAxis& axis : request.front) {
     const std::optional<double> value = evaluator.value(variant, axis.quantity);
     if (!value) return std::nullopt;
-    // A value with a large error does not dominate others because of its error.
+    // The subtraction prevents a value with a large error from dominating other values only because of its error.
     const double error = evaluator.error_of(variant, axis.quantity);
     merits.push_back((axis.is_maximized ? *value : -*value) - 2.0 * error);
   }
@@ -412,7 +414,7 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
   return text.empty() ? "the objective has no value for any design" : text + ": no design satisfies all constraints";
 }
 
-/// Adds the results that need no further computation: the Pareto front, and the designs that were not chosen.
+/// Adds the results that need no further computation: the Pareto front and the designs that were not chosen.
 void add_results(const OptimiseRequest& request, const Evaluator& evaluator, std::vector<Rejected> neighbours,
                  Optimum& optimum) {
   optimum.rejected = excluded_designs(request, evaluator, *optimum.best);
@@ -445,7 +447,8 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
     optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));
 }
 
-/// Fills the result of an interrupted search with the best of all designs that are finished.
+/// Completes the result of an interrupted search. The best design is chosen from the designs that were computed before
+/// the interruption.
 void finish_early(const OptimiseRequest& request, Evaluator& evaluator, Optimum& optimum) {
   optimum = {};
   optimum.complete = false;

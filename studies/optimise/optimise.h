@@ -38,8 +38,8 @@ struct OptimiseRequest {
   std::size_t scan = 65;               ///< number of designs in the first scan, for each combination of discrete values
   std::vector<std::string> band_keys;  ///< keys whose tolerance bands are requested
   double band_loss = 0.01;             ///< relative loss of the objective at which a tolerance band ends
-  bool is_rounded = true;              ///< true: the result is rounded to values that drawings use
-  /// True: designs are computed at several levels of accuracy, and the store contains the level of each point.
+  bool is_rounded = true;              ///< true: the parameters of the result are rounded to values with few digits
+  /// True: designs are computed at several levels of accuracy, and the store contains the level of each stored point.
   bool has_levels = true;
 };
 
@@ -88,8 +88,8 @@ struct Optimum {
   std::vector<Variant> front;  ///< Pareto front: feasible designs that no other design dominates
   /// All evaluated designs, with their most accurate results, in the order of their first evaluation.
   std::vector<Variant> designs;
-  /// Upper limit, with a confidence of 95 %, of the amount by which the best design near the evaluated designs exceeds
-  /// the objective of `best`. 0 if the objective has no random error.
+  /// Upper limit of the amount by which another design near the evaluated designs may be better than `best`, with a
+  /// confidence of 95 %. It is 0 if the objective has no random error.
   double resolution = 0.0;
   std::vector<Rejected> rejected;
   /// Cheaper alternative to the best design. Among the designs of the Pareto front that lose at most 1 % of the
@@ -110,7 +110,8 @@ class OptimiseObserver {
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
   /// Reports a feasible design that is better than all designs that were reported before. The value by which designs
-  /// are compared is the objective minus twice its standard error. Only one thread at a time calls this function.
+  /// are compared is the objective minus twice its standard error. This function is never called by two threads at the
+  /// same time.
   virtual void at_best(const Variant& best) { static_cast<void>(best); }
   /// Reports the progress of a group of designs that are evaluated together.
   /// \param fraction finished fraction of the group; 0 when the group begins
@@ -130,10 +131,10 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
 /// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
 /// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
-/// within bounds and constraints. Finally, values are rounded if this does not make the design worse. If quantities
-/// have random errors, search_with_noise() is used. Designs that are already in the store are not computed again, and
-/// the result is the same. The result of an interrupted search contains all designs of the store. \throw OutputError if
-/// a result cannot be stored
+/// within bounds and constraints. Finally, parameters are rounded if the objective does not decrease significantly. If
+/// quantities have random errors, search_with_noise() is used. Designs that are already in the store are not computed
+/// again, and the result is the same. The result of an interrupted search contains all designs of the store.
+/// \throw OutputError if a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                  OptimiseObserver* observer, const Cancellation* cancel);
 

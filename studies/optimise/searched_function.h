@@ -24,13 +24,13 @@ struct SearchPoint {
   }
 };
 
-/// A point that is to be observed, with the accuracy of the observation.
+/// Point that is to be observed, and the accuracy of the observation.
 struct SearchTrial {
   SearchPoint at;
   ErrorLevel level;
 };
 
-/// Value and its standard error.
+/// Value with its standard error.
 struct Estimate {
   double value = 0.0;
   double std_error = 0.0;
@@ -38,13 +38,13 @@ struct Estimate {
 
 /// Result of a trial.
 struct Observation {
-  std::optional<Estimate> objective;  ///< none if the objective has no value at this point
-  /// Amount by which each limit is exceeded; a limit is satisfied if its value is at most 0. Infinite if the limited
-  /// quantity has no value.
+  std::optional<Estimate> objective;  ///< empty if the objective has no value at this point
+  /// Amount by which each limit is exceeded. A limit is satisfied if this amount is at most 0. The amount is infinite
+  /// if the limited quantity has no value.
   std::vector<Estimate> excess;
 };
 
-/// Function that a search maximizes within limits.
+/// Function that a search maximizes under constraints. Each constraint limits a quantity.
 class SearchedFunction {
  public:
   SearchedFunction() = default;
@@ -59,14 +59,15 @@ class SearchedFunction {
     static_cast<void>(point);
     return true;
   }
-  /// Returns points near `point` at which the objective may have a peak, such as sizes that divide the part.
+  /// Returns points near `point` at which the objective may have a peak. An example are sizes for which a whole number
+  /// of elements fills the part.
   /// \param within maximum change of each position
   virtual std::vector<SearchPoint> peaks_near(const SearchPoint& point, double within) const {
     static_cast<void>(point);
     static_cast<void>(within);
     return {};
   }
-  /// Returns points near `point` with rounder values, the most preferred point first.
+  /// Returns points near `point` whose values have fewer digits. The point with the fewest digits comes first.
   /// \param within maximum change of each position
   virtual std::vector<SearchPoint> rounder_points(const SearchPoint& point, double within) const {
     static_cast<void>(point);

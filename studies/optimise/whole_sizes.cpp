@@ -9,11 +9,11 @@
 namespace retrace::studies {
 namespace {
 
-/// Maximum deviation from a whole number of elements. Array layouts use the same tolerance.
+/// Maximum deviation of the number of elements from a whole number. The layout of arrays uses the same tolerance.
 constexpr double kWhole = 1e-9;
-/// Maximum number of sizes between two limits.
+/// Maximum number of sizes for one length. A length with more sizes is ignored.
 constexpr double kMaxSizes = 1000.0;
-/// Smallest step of round values, as a fraction of the value.
+/// Smallest step between round values, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;
 
 }  // namespace
@@ -65,14 +65,14 @@ std::vector<double> round_values(double value, double low, double high, const Wh
   std::vector<double> values;
   if (!(high > low)) return values;
   const double size = std::max(std::abs(low), std::abs(high));
-  // Steps begin at the largest power of ten that may be needed.
+  // The steps decrease. The first power of ten is at least as large as the values.
   const int first = static_cast<int>(std::ceil(std::log10(size)));
   for (int exponent = first; std::pow(10.0, exponent) > kSmallestStepFraction * size; --exponent)
     for (const double digit : {5.0, 2.0, 1.0}) {
       const double step = digit * std::pow(10.0, exponent);
       std::vector<double> near;
       for (const double count : {std::floor(value / step), std::ceil(value / step)}) {
-        // The text has no rounding errors such as 0.30000000000000004.
+        // The conversion to text and back removes rounding errors such as 0.30000000000000004.
         const double at = std::stod(fmt::format("{:.12g}", count * step));
         if (at >= low && at <= high && std::ranges::count(values, at) == 0 && std::ranges::count(near, at) == 0)
           near.push_back(at);

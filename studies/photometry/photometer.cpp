@@ -95,7 +95,7 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 /// \param model null if it is not known yet; the surface is then assumed to be exact
 void allow_tangent_planes(const design::Design& design, const design::OpticalModel* model,
                           const PhotometrySettings& request, raytrace::EngineFacts& facts) {
-  // The tangent planes of a single element do not contain its chamfer and its mount.
+  // A computation with tangent planes would omit the chamfer and the mount of a single element.
   const auto* const round =
       design.elements() != nullptr ? std::get_if<geometry::RoundCube>(&design.part().element) : nullptr;
   if (round != nullptr && (round->chamfer_mm > 0.0 || round->mount_diameter_mm > 0.0)) return;

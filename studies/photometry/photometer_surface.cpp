@@ -30,8 +30,8 @@ constexpr std::size_t kMinSamples = 24;
 constexpr double kAnglesOfMap = 8.0;
 // Maximum number of observation angles for which the full number of pairs is traced.
 constexpr double kAnglesOfSamples = 8.0;
-// Maximum number of pairs for which the light that rough facets scatter is computed. This light varies slowly from
-// element to element, and takes several times as long as the mean field.
+// Maximum number of pairs of element and wavelength for which the light that rough facets scatter is computed. This
+// light varies slowly from element to element. Its computation takes several times as long as the mean field.
 constexpr std::size_t kScatterSamples = 24;
 // Every kComparedSamples-th sample is compared with rays.
 constexpr std::size_t kComparedSamples = 6;
@@ -169,7 +169,7 @@ class Photometer::SurfaceMeasurement {
     std::unique_ptr<const ElementSample> sample;
     std::vector<ElementReading> readings;
   };
-  /// Settings that share a direction of light, and the samples that are traced for them.
+  /// Settings with the same direction of light, and the samples that are traced for these settings.
   struct Direction {
     EquivalentDirections alike;
     std::size_t lit_elements = 0;
@@ -185,10 +185,10 @@ class Photometer::SurfaceMeasurement {
     /// Returns true if the tangent-plane model is compared with rays for this sample.
     bool compares_rays() const { return !is_scattered && sample % kComparedSamples == 0; }
   };
-  /// Light of an element that is measured.
+  /// Kind of light of an element that is measured.
   enum class MeasuredLight {
     mean,     ///< only the mean field behind rough facets
-    complete  ///< with the light that rough facets scatter
+    complete  ///< including the light that rough facets scatter
   };
   /// Far field of one element, and the ratios that estimate the light that is missing in it.
   struct ElementField {

@@ -10,8 +10,8 @@ namespace retrace::studies {
 /// Accuracy of a computation, and the random numbers that it uses.
 struct ErrorLevel {
   double scale = 1.0;  ///< target error of the computation, as a multiple of the target error of the study
-  /// Number of the stream of random numbers. Computations for different points with the same number use common random
-  /// numbers, so that their errors are similar and nearly cancel in differences.
+  /// Number of the stream of random numbers. Computations with the same number use common random numbers. Their errors
+  /// are similar and nearly cancel in differences.
   std::uint32_t replicate = 0;
 
   bool operator==(const ErrorLevel&) const = default;

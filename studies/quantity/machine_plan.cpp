@@ -21,7 +21,7 @@ constexpr double kMaxEdgeLifeMm = 1e9;
 /// Allowed excess of the tool's width over the element's width: one nanometre.
 constexpr double kExcessMm = 1e-6;
 
-/// Returns the job that cuts the prisms of a design with the values of the process.
+/// Returns a job that cuts the prisms of a design according to [machining].
 fabrication::Job job_of_process(const design::Design& design, const geometry::RtpElement& prism,
                                 const MachiningProcess& process) {
   JobRequest request;
@@ -31,15 +31,15 @@ fabrication::Job job_of_process(const design::Design& design, const geometry::Rt
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
-  // The limit on the tool life is a quantity of the study. A plan with this limit would be refused instead. With a
-  // large limit, the plan contains the length of cut.
+  // A plan that exceeds the tool life would be refused. The job therefore has a very large tool life, and its plan
+  // contains the length of cut. The study compares this length with the actual tool life.
   if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
 }
 
-/// Returns the smallest distance of the linear axes from their limits, at the roots of all elements and at the
-/// clearance above them.
+/// Returns the smallest distance between a linear axis and its limit. The distance is computed at the roots of all
+/// elements and at the clearance height above the roots.
 double travel_of(const fabrication::Job& job, const fabrication::Machine& machine,
                  const std::vector<fabrication::CutElement>& elements) {
   using geometry::Vec3;
@@ -99,7 +99,8 @@ MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess
     const double cut_mm = std::accumulate(planned.program_cuts_mm.begin(), planned.program_cuts_mm.end(), 0.0);
     plan.cut_per_element_mm = cut_mm / static_cast<double>(std::max<std::size_t>(1, elements.size()));
   } catch (const InputError&) {
-    // The machine cannot reach a facet, or an axis would exceed a limit. The missing values violate all limits.
+    // The machine cannot reach a facet, or an axis would exceed a limit. The results remain empty, and empty results
+    // violate all limits.
   }
   return plan;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Plans the prisms of a candidate on the machine of [machining]: machining time, travel of the axes and tool life.
+// Plans how the machine of [machining] cuts the prisms of a candidate. The plan gives machining time, travel of the
+// axes and length of cut.
 
 #include <cstddef>
 #include <optional>
@@ -14,12 +15,13 @@ namespace retrace::studies {
 struct MachinePlan {
   std::size_t elements = 0;      ///< number of elements that are cut
   std::optional<double> time_s;  ///< machining time of the plan
-  /// Smallest distance of X, Y or Z from a limit of the axis while facets are cut. It is negative beyond a limit.
+  /// Smallest distance between X, Y or Z and a limit of this axis while facets are cut. The distance is negative if the
+  /// axis exceeds the limit.
   std::optional<double> travel_mm;
-  std::optional<double> cut_per_element_mm;  ///< path length of the edge in the material, for one element
+  std::optional<double> cut_per_element_mm;  ///< path length of the cutting edge in the material, for one element
 };
 
-/// Replaces the tool's edge with its life, and the process of a job, by those of [machining].
+/// Replaces the tool's edge, the tool life and the process of a job by the values of [machining].
 void take_machining(const MachiningProcess& process, fabrication::Job& job);
 
 /// Plans all elements of a design like `retrace job` and `retrace fabricate`.

@@ -29,9 +29,9 @@ struct MachiningProcess {
   double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
   /// Maximum path length of a cutting edge in the material; no limit if empty.
   std::optional<double> edge_life_mm;
-  std::string machine;     ///< name of a shipped machine, or a machine file; if empty, times are those of the path only
-  std::string process;     ///< name of a shipped process, or a process file; if empty, the defaults above
-  bool has_limits = true;  ///< true: an optimization keeps the limits of the tool and the machine
+  std::string machine;     ///< shipped machine or machine file; if empty, times follow only from the tool path
+  std::string process;     ///< shipped process or process file; if empty, the defaults above apply
+  bool has_limits = true;  ///< true: optimizations respect the limits of the tool and the machine
   /// True: the design gets the facet texture and the root radius that result from cutting.
   bool surface_as_cut = false;
 };

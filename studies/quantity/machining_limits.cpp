@@ -21,7 +21,7 @@ bool has_prisms(const Study& study) {
     const design::Design design = make_candidate(study, example_values(study)).design();
     return design.elements() != nullptr && std::holds_alternative<geometry::RtpElement>(design.part().element);
   } catch (const InputError&) {
-    return false;  // the study reports the invalid design when it computes this point
+    return false;  // the study reports an invalid design when it computes the design
   }
 }
 

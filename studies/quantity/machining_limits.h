@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of the tool and the machine that an optimization keeps by default.
+// Limits of the tool and the machine that an optimization respects by default.
 
 #include <vector>
 
@@ -10,8 +10,8 @@
 namespace retrace::studies {
 
 /// Returns the limits that the table [machining] of a study implies. They are limits on the quantities `tool_fit_mm`,
-/// `machine_travel_mm` and `edge_life_margin_mm`. Returns none if the study ignores them, or if its first design is not
-/// an array of prisms.
+/// `machine_travel_mm` and `edge_life_margin_mm`. Returns an empty list if the study ignores these limits, or if its
+/// first design is not an array of prisms.
 std::vector<Constraint> machining_limits(const Study& study);
 
 /// Returns a study that also computes the quantities of its machining limits. Quantities that the study already has are

@@ -19,12 +19,12 @@ constexpr double kEarthKm3PerS2 = 398600.4418;
 constexpr double kEarthRadiusKm = 6378.1366;
 constexpr double kLightKmPerS = 299792.458;
 
-// Number of integration points per finest detail, and additional points.
+// Number of integration points per width of the finest details, and number of additional points.
 constexpr double kPointsPerDetail = 3.0;
 constexpr double kMorePoints = 6.0;
-// Number of rings and points per ring on which extremes are searched, per finest detail.
+// Number of rings and of points along each ring, per width of the finest details, for the search of extremes.
 constexpr double kSearchPerDetail = 6.0;
-// Number of steps in which the step of the search for an extreme is divided by two.
+// Number of times that the search for an extreme halves its step.
 constexpr int kHalvings = 20;
 
 Vec2 at(double radius, double angle) {
@@ -41,7 +41,7 @@ struct PolarPoint {
   double angle = 0.0;
 };
 
-/// Returns the greatest value of a function near a point, by a pattern search that halves its steps.
+/// Returns the largest value of a function near a point. The pattern search halves its step again and again.
 double refined_max(const Annulus& annulus, PolarPoint best, double value, double step_rad,
                    const DirectionValues& values) {
   double radial = step_rad;
@@ -71,7 +71,7 @@ double refined_max(const Annulus& annulus, PolarPoint best, double value, double
 Annulus aberration_of_orbit(double height_km, double elevation_deg) {
   const double radius_km = kEarthRadiusKm + height_km;
   const double largest = 2.0 * std::sqrt(kEarthKm3PerS2 / radius_km) / kLightKmPerS;
-  // Sine of the angle at the satellite between the station and the centre of the Earth.
+  // Sine of the angle between the directions from the satellite to the station and to the centre of the Earth.
   const double sine = kEarthRadiusKm / radius_km * std::cos(elevation_deg * kRadPerDeg);
   return {largest * std::sqrt(1.0 - sine * sine), largest};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Velocity aberration, and statistics of a function of the direction over the annulus of velocity aberration.
+// Velocity aberration. Also computes statistics of a function of direction over the annulus of velocity aberration.
 
 #include <cstddef>
 #include <functional>
@@ -10,19 +10,19 @@
 
 namespace retrace::studies {
 
-/// Annulus of directions around the direction to the source, between two angles.
+/// Directions whose angle from the direction to the source is between two limits.
 struct Annulus {
   double inner_rad = 0.0;
   double outer_rad = 0.0;
 };
 
-/// Returns the velocity aberrations 2 v / c that stations on the ground observe for a satellite on a circular orbit
-/// around the Earth. The rotation of the Earth is neglected.
+/// Returns the minimum and the maximum of the velocity aberration 2 v / c of a satellite on a circular orbit, for all
+/// stations on the ground. The rotation of the Earth is neglected.
 /// \param height_km height of the orbit above the equator
 /// \param elevation_deg minimum elevation of the satellite at the station
 Annulus aberration_of_orbit(double height_km, double elevation_deg);
 
-/// A direction given by angles to the right and up, with its weight in a mean over solid angle.
+/// Direction, given by angles to the right and up, with its weight in a mean over solid angle.
 struct AnnulusPoint {
   geometry::Vec2 angles_rad = geometry::Vec2::Zero();
   double weight = 0.0;
@@ -39,7 +39,8 @@ struct AnnulusStatistics {
 };
 /// Function that returns one value for each direction, given by angles to the right and up in rad.
 using DirectionValues = std::function<std::vector<double>(const std::vector<geometry::Vec2>& angles_rad)>;
-/// Computes the statistics of a function. The extremes are refined beyond the sampling points.
+/// Computes the mean and the extremes of a function over an annulus. A local search improves the extremes of the
+/// sampled values.
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values);
 
 }  // namespace retrace::studies

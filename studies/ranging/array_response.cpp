@@ -16,22 +16,23 @@ namespace {
 
 // Half of the distance that light travels in 1 ps.
 constexpr double kOneWayMmPerPs = 0.5 * 0.299792458;
-// Range of the response beyond the first and the last cube, and distance of its points, in standard deviations.
+// Margin of the response in front of the first cube and behind the last cube, and distance between points of the
+// response. Both are in standard deviations of the pulse.
 constexpr double kResponseMargin = 5.0;
 constexpr double kResponseStep = 0.2;
 // Maximum number of points of a response, which limits its size for short pulses.
 constexpr double kMaxResponsePoints = 4000.0;
 constexpr std::uint32_t kPhaseStream = 66;
 
-/// Light of a cube in one of the two states of the sent light.
+/// Amplitudes of the light of a cube, for one of the two polarisation states of the transmitted light.
 using Amplitude = Eigen::Vector2cd;
 
-/// Light of all cubes that interferes, and light that only adds power.
+/// Light of all cubes, divided into light that interferes and light that only adds power.
 struct Emitters {
   std::vector<std::array<Amplitude, 2>> amplitudes;  ///< strongest coherent group of each cube
   std::vector<double> range_mm;
-  double other_m2 = 0.0;      ///< power of all other groups
-  double other_moment = 0.0;  ///< sum of power times range over these groups
+  double other_m2 = 0.0;      ///< cross section of all other coherent groups
+  double other_moment = 0.0;  ///< sum of cross section times range over the other groups
 };
 
 double power_of(const std::array<Amplitude, 2>& amplitudes) {
@@ -68,13 +69,14 @@ std::vector<std::complex<double>> random_phases(std::size_t count, std::uint32_t
   return phases;
 }
 
-/// Overlap of the fields of two pulses. It is 1 if both arrive at the same time.
+/// Returns the overlap of the fields of two pulses. The overlap is 1 if both pulses arrive at the same time.
 /// \param sigma_mm standard deviation of the power of the pulse, as a one-way range
 double overlap(double range_difference_mm, double sigma_mm) {
   return std::exp(-range_difference_mm * range_difference_mm / (8.0 * sigma_mm * sigma_mm));
 }
 
-/// Returns the shot of continuous light. Its centroid is not defined and is set to that of the incoherent sum.
+/// Returns a shot with continuous light. The centroid of continuous light is not defined, so the centroid of the
+/// incoherent sum is used.
 Shot continuous_shot(const Emitters& all, const std::vector<std::complex<double>>& phases, double centroid_mm) {
   std::array<Amplitude, 2> sums = {Amplitude::Zero(), Amplitude::Zero()};
   for (std::size_t k = 0; k < all.amplitudes.size(); ++k)

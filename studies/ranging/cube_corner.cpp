@@ -22,17 +22,19 @@ using geometry::Vec2, geometry::Vec3;
 
 // Minimum power of a beam that is traced, as a fraction of the incident power.
 constexpr double kCubeCutoff = 1e-8;
-// Half angle of the cone of beams that are diffracted. It is wide enough for cubes with errors of some arc minutes.
+// Half angle of the cone around the direction to the source. Only beams inside the cone are diffracted. The cone is
+// wide enough for angle errors of some arc minutes.
 constexpr double kDiffractedRad = 0.02;
-// Minimum trace of the matrix ReturnedBeam::entry_from_exit for which the entrance face has reflected the beam between
-// two retroreflections. The trace is 2 for a mirror image, and -2 for light that a cube corner returns.
+// Threshold for the trace of the matrix ReturnedBeam::entry_from_exit. The trace is -2 for light that the cube returns
+// directly. It is 2 for light that the entrance face has reflected between two retroreflections.
 constexpr double kReflectedTrace = 1.0;
-// Step of the wavelength for the derivative of the refractive index. The error of the derivative is below 1e-11 per nm.
+// Step of the wavelength in the numerical derivative of the refractive index. The error of the derivative is below
+// 1e-11 per nm.
 constexpr double kDispersionStepNm = 1.0;
-// Directions count as equivalent if their components differ by less than this value.
+// Maximum difference between the components of two directions that count as equal.
 constexpr double kSameDirection = 1e-9;
 
-/// Checks that a design is a cube corner that this study can compute.
+/// Checks that a design is a single cube corner that this study supports.
 void check_design(const design::Design& design) {
   design::require_supported(design, {.what = "retrace ranging", .substrates = false});
   const geometry::PartSpec& spec = design.part();
@@ -59,7 +61,8 @@ design::Design with_wavelengths(design::Design design, const std::vector<double>
   return design;
 }
 
-/// Returns n - w dn/dw. The derivative is computed by a formula of fourth order.
+/// Returns the group index n - w dn/dw, where w is the wavelength. The derivative is a finite difference of fourth
+/// order.
 double group_index_at(const design::OpticsOfDesign& optics, double wavelength_nm) {
   const auto index = [&](int steps) { return optics.at(wavelength_nm + kDispersionStepNm * steps).index; };
   const double slope = (8.0 * (index(1) - index(-1)) - (index(2) - index(-2))) / (12.0 * kDispersionStepNm);

@@ -1,7 +1,7 @@
 #pragma once
 
-// A design of a single cube corner that is prepared for ranging: its far field for any direction and wavelength, its
-// symmetries, and the optical path to its apex.
+// Single cube corner, prepared for ranging. Computes its far field for any direction and wavelength, its symmetries,
+// and the optical path to its apex.
 
 #include <array>
 #include <cstddef>
@@ -16,16 +16,16 @@
 
 namespace retrace::studies {
 
-/// Range correction of a cube corner: the increase of the measured one-way range because light travels through the
-/// body to the apex. The reference point is on the entrance face, in front of the apex.
+/// Returns the range correction of a cube corner. It is the increase of the measured one-way range because light
+/// travels through the body to the apex. The reference point is on the entrance face, in front of the apex.
 /// \param depth_mm distance of the apex from the entrance face
 /// \param index refractive index at the wavelength of the light
 /// \param group_index group index at this wavelength
 /// \param sine sine of the angle of incidence
 double range_correction_mm(double depth_mm, double index, double group_index, double sine);
 
-/// Approximation L sqrt(n_g^2 - sin^2 i) of range_correction_mm(), which is common in satellite ranging. Both are equal
-/// at normal incidence and without dispersion.
+/// Returns L sqrt(n_g^2 - sin^2 i), an approximation of range_correction_mm() that is common in satellite ranging. The
+/// approximation is exact at normal incidence, and also without dispersion.
 double usual_range_correction_mm(double depth_mm, double group_index, double sine);
 
 /// Optical data of the body at one wavelength.
@@ -35,11 +35,11 @@ struct CubeIndex {
   double group_index = 1.0;  ///< n - w dn/dw
 };
 
-/// Direction of light that is equivalent to another one by a symmetry of the cube.
+/// Direction of light that a symmetry of the cube maps to another direction.
 struct EquivalentLight {
   geometry::Vec3 to_source = geometry::Vec3::UnitZ();
-  /// Orthogonal map that takes the other direction to `to_source`, and results for the other direction to results for
-  /// `to_source`. Its determinant may be -1.
+  /// Orthogonal matrix that maps the other direction to `to_source`. It also maps results for the other direction to
+  /// results for `to_source`. Its determinant may be -1.
   Eigen::Matrix3d map = Eigen::Matrix3d::Identity();
 };
 
@@ -47,7 +47,7 @@ struct EquivalentLight {
 class CubeCorner {
  public:
   /// \param wavelengths_nm wavelengths in vacuum, ascending; if empty, the wavelengths of the design
-  /// \param entrance_reflections true: light that the entrance face reflects is included
+  /// \param entrance_reflections true: reflections at the entrance face are included
   /// \throw InputError if the design is not a single cube corner with a plane entrance face and smooth facets
   CubeCorner(design::Design design, const std::vector<double>& wavelengths_nm, bool entrance_reflections);
 
@@ -66,7 +66,8 @@ class CubeCorner {
   /// \param wavelength index into indices()
   CubeField field(const geometry::Vec3& to_source, std::size_t wavelength, const Cancellation* cancel) const;
 
-  /// Returns the representative of all directions that are equivalent to a direction by a symmetry of the cube.
+  /// Returns the representative of a direction. All directions that a symmetry of the cube maps to each other have the
+  /// same representative.
   EquivalentLight representative(const geometry::Vec3& to_source) const;
 
  private:

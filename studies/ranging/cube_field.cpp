@@ -14,11 +14,11 @@ using geometry::Vec2, geometry::Vec3, raytrace::JonesMatrix, raytrace::Stokes;
 namespace field_lanes = raytrace::field_lanes;
 
 constexpr double kMm2PerM2 = 1e6;
-// Minimum power of a beam whose direction counts as a deflection, as a fraction of the diffracted power.
+// Minimum power of a beam that deflection_rad() takes into account, as a fraction of the diffracted power.
 constexpr double kNoticeablePower = 1e-2;
 
-/// Returns the coherency matrix of light that travels away from the source. Its second axis is opposite to the p axis
-/// of this light.
+/// Returns the coherency matrix of light that travels away from the source. The second axis of the matrix is opposite
+/// to the p axis of this light.
 Eigen::Matrix2cd sent_coherency(const Stokes& s) {
   Eigen::Matrix2cd c;
   c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Far field of the light that one cube corner returns, as complex Jones matrices. Fields of several cubes can be added
-// with or without interference, and every polarisation of the incident light can be evaluated afterwards.
+// Far field of the light that one cube corner returns, as complex Jones matrices. The fields of several cubes can be
+// added with or without interference. The polarisation of the incident light can be chosen after the computation.
 
 #include <complex>
 #include <span>
@@ -14,23 +14,23 @@
 
 namespace retrace::studies {
 
-/// Jones matrices of light that returns in one direction, one for each coherent group of a CubeField. The unit is m:
-/// if the incident light has unit power, the squared modulus of the returned field is the cross section in m2. Both
-/// indices refer to the axes of the source (docs/theory/polarisation.md, "Axes in files").
+/// Jones matrices of light that returns in one direction, one matrix for each coherent group of a CubeField. The unit
+/// is m. If the incident light has unit power, the squared modulus of the returned field is the cross section in m2.
+/// Rows and columns refer to the axes of the source (docs/theory/polarisation.md, "Axes in files").
 using DirectionField = std::vector<raytrace::JonesMatrix>;
 
 /// Returns the Stokes parameters of the returned light for incident light with the Stokes parameters `incident`. Both
-/// refer to the axes of the source.
+/// sets of parameters refer to the axes of the source.
 raytrace::Stokes returned_stokes(const raytrace::JonesMatrix& jones, const raytrace::Stokes& incident);
 /// Returns the sum of the Stokes parameters of all coherent groups.
 raytrace::Stokes returned_stokes(const DirectionField& field, const raytrace::Stokes& incident);
 
-/// Diffracted far field of one cube corner for one direction of incidence and one wavelength. Its scale is the cross
-/// section 4 pi R_I, where R_I is the intensity divided by the irradiance perpendicular to the beam.
+/// Diffracted far field of one cube corner for one direction of incidence and one wavelength. Squared fields are cross
+/// sections 4 pi R_I, where R_I is the intensity divided by the irradiance perpendicular to the beam.
 class CubeField {
  public:
   CubeField() = default;
-  /// \param beam_mm2 cross section of the incident beam, perpendicular to its direction
+  /// \param beam_mm2 area of the incident beam, perpendicular to its direction
   CubeField(const raytrace::FarField& field, double wavelength_nm, double beam_mm2);
 
   /// Returns the fields in several directions.
@@ -41,16 +41,15 @@ class CubeField {
   std::size_t group_count() const { return groups_.size(); }
   /// Returns the angular width of the finest details, in rad, or infinity if there is no light.
   double detail_rad() const { return detail_rad_; }
-  /// Returns the largest angle between the direction to the source and the direction of a beam in geometrical optics.
-  /// Weak beams are ignored.
+  /// Returns the largest angle between the direction to the source and a returned beam, without diffraction. Weak beams
+  /// are ignored.
   /// \param to_source unit vector in the part frame
   double deflection_rad(const geometry::Vec3& to_source) const;
   /// Returns the fraction of the incident power that is diffracted.
   double diffracted_power() const { return diffracted_power_; }
-  /// Returns the fraction of the incident power that returns near the source and is not diffracted because its beams
-  /// are too weak.
+  /// Returns the fraction of the incident power in beams that return near the source but are too weak to be diffracted.
   double undiffracted_power() const { return undiffracted_power_; }
-  /// Returns the cross section of the incident beam in mm2.
+  /// Returns the area of the incident beam in mm2, perpendicular to its direction.
   double beam_mm2() const { return beam_mm2_; }
 
  private:

@@ -15,13 +15,13 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Cubes with a smaller cosine of the angle of incidence are dark.
+// Minimum cosine of the angle of incidence of an illuminated cube.
 constexpr double kMinCosine = 1e-4;
-// Directions of light are rounded to multiples of this value when they are compared.
+// Step to which the components of directions are rounded before directions are compared.
 constexpr double kDirectionStep = 1e-9;
 // Number of directions that one task evaluates.
 constexpr std::size_t kDirectionsPerTask = 64;
-// Sources whose direction deviates less than this value from the x axis use another first axis.
+// Maximum deviation from the x axis of a source that uses +y instead of +x as its reference axis.
 constexpr double kAlongX = 1e-6;
 
 using LightKey = std::array<std::int64_t, 4>;
@@ -115,7 +115,7 @@ double LitCubes::undiffracted_power() const {
   return lit_.empty() ? 0.0 : sum / beam_mm2();
 }
 
-/// Returns the fields of a cube, along the axes of the source in the frame of the array.
+/// Returns the fields of a cube in several directions, along the axes of the source in the frame of the array.
 /// \param directions unit vectors in the frame of the array
 std::vector<DirectionField> LitCubes::fields_of(const Lit& lit, std::span<const Vec3> directions) const {
   std::vector<Vec3> own;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cubes of an array that return light from one direction, and the sum of their light in any direction of observation.
+// Cubes of an array that are illuminated from one direction, and the sum of their returned light in any direction.
 
 #include <map>
 #include <memory>
@@ -15,19 +15,19 @@
 
 namespace retrace::studies {
 
-/// Cubes of an array that share the design of a CubeCorner, except for the errors of their dihedral angles.
+/// Cubes of an array. All cubes have the same design, except for the errors of their dihedral angles.
 struct CubeSet {
   std::vector<ArrayCube> cubes;
   std::vector<CubeCorner> variants;          ///< designs with different errors of the dihedral angles
   std::vector<std::size_t> variant_of_cube;  ///< index into `variants`, for each cube
 };
 
-/// Returns the frame of directions around the direction to the source. Its axes are those of
-/// docs/theory/polarisation.md; if the source is on the x axis, +y replaces +x.
+/// Returns the frame of directions around the direction to the source. Its axes are defined in
+/// docs/theory/polarisation.md. If the source is on the x axis, +y replaces +x in this definition.
 raytrace::ReturnFrame return_frame_of(const geometry::Vec3& to_source);
 
-/// Illuminated cubes at one wavelength, and their fields. Cubes that see light from equivalent directions share a
-/// field.
+/// Illuminated cubes at one wavelength, and their fields. If light reaches several cubes from equivalent directions in
+/// their own frames, these cubes share a field.
 class LitCubes {
  public:
   /// Traces the light. If the computation is cancelled, the result has no cubes.
@@ -36,19 +36,19 @@ class LitCubes {
   LitCubes(const CubeSet& set, const geometry::Vec3& to_source, std::size_t wavelength, const Cancellation* cancel);
 
   std::size_t count() const { return lit_.size(); }
-  /// Returns the number of directions and designs that were traced.
+  /// Returns the number of traces. Each trace belongs to one direction and one design.
   std::size_t traced() const { return fields_.size(); }
   const raytrace::ReturnFrame& frame() const { return frame_; }
   /// Returns the width of the finest details, or infinity if no light returns.
   double detail_rad() const;
-  /// Returns the largest deflection of a beam in geometrical optics.
+  /// Returns the largest angle between the direction to the source and a returned beam, without diffraction.
   double deflection_rad() const;
-  /// Returns the mean of the diffracted fractions of the light on all cubes, weighted with their incident light.
+  /// Returns the diffracted fraction of the light that is incident on all cubes.
   double diffracted_power() const;
   double undiffracted_power() const;
   /// Returns the cosines of the angles of incidence of all lit cubes.
   std::vector<double> cosines() const;
-  /// Returns the sum of the cross sections of all incident beams, in mm2.
+  /// Returns the sum of the areas of all incident beams in mm2, perpendicular to their direction.
   double beam_mm2() const;
 
   /// Returns the Stokes parameters of the light of all cubes without interference, in m2.
@@ -62,9 +62,9 @@ class LitCubes {
   struct Lit {
     std::size_t cube = 0;
     std::size_t field = 0;  ///< index into fields_
-    /// Rotation, or rotation and reflection, from the frame of the array to that of the traced cube.
+    /// Rotation from the frame of the array to the frame of the traced cube. It may include a reflection.
     Eigen::Matrix3d traced_from_array = Eigen::Matrix3d::Identity();
-    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< axes of the traced light from those of the array
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< maps the axes of the array to the axes of the traced light
     double range_mm = 0.0;
   };
   struct Traced {

@@ -25,13 +25,13 @@ using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
 constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;
 constexpr double kArcsecPerArcmin = 60.0;
-// Margin of the map around the annulus and the spots of geometrical optics, in widths of the finest details.
+// Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
 constexpr double kMapMargin = 4.0;
 constexpr double kAnnulusMargin = 1.25;
-// Number of rings, and of points per ring, of the curve over the angle from the direction to the source.
+// Number of rings, and number of points per ring, for the cross section as a function of the angle from the source.
 constexpr std::size_t kRings = 60;
 constexpr std::size_t kPointsPerRing = 72;
-// Maximum power, as a fraction of the incident light, that may be left out without a warning.
+// Maximum power that is not diffracted and causes no warning, as a fraction of the incident power.
 constexpr double kMaxUndiffractedPower = 1e-3;
 // Degree of polarisation below which light counts as unpolarised.
 constexpr double kMinPolarisation = 1e-9;
@@ -57,7 +57,7 @@ Vec2 observation_of(const RangingRequest& request, const std::optional<Annulus>&
   return annulus ? Vec2(0.5 * (annulus->inner_rad + annulus->outer_rad), 0.0) : Vec2(Vec2::Zero());
 }
 
-/// Divides returned light into light with the polarisation that was sent and light with the orthogonal one.
+/// Divides returned light into light with the transmitted polarisation and light with the orthogonal polarisation.
 ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sent) {
   ByPolarisation<double> result{returned.i};
   const double degree = std::hypot(sent.q, sent.u, sent.v);
@@ -68,7 +68,7 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
-/// Light of lit cubes in any direction, averaged over the discs of source and receiver.
+/// Returned light of the illuminated cubes in any direction, averaged over the discs of source and receiver.
 class ObservedLight {
  public:
   ObservedLight(const LitCubes& lit, const RangingSettings& settings, const Cancellation* cancel)
@@ -96,7 +96,7 @@ class ObservedLight {
     return result;
   }
 
-  /// Returns the statistics of one component over an annulus. Empty if the component is not defined.
+  /// Returns the statistics of one component over an annulus. The result is empty if the component is not defined.
   template <class Component>
   std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
     if (!component(at({Vec2::Zero()}).front())) return std::nullopt;
@@ -156,7 +156,7 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
   return map;
 }
 
-/// Returns the design with other errors of the dihedral angles.
+/// Returns the design after replacing the errors of its dihedral angles.
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
   const std::vector<std::string> overrides = {
       fmt::format("surface.dihedral_error_arcmin=[{}, {}, {}]", shortest(errors_arcsec[0] / kArcsecPerArcmin),
@@ -173,7 +173,7 @@ std::vector<double> sorted_wavelengths(const RangingRequest& request, const desi
   return wavelengths;
 }
 
-/// Returns the cubes of a study: those of the array, or a single cube whose frame is the part frame.
+/// Returns the cubes of a study. Without an array, the result is a single cube whose frame is the part frame.
 CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
   const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
   CubeSet set;

@@ -20,8 +20,9 @@
 
 namespace retrace::studies {
 
-/// Cross sections in m2 by the polarisation of the returned light. `parallel` is light with the polarisation that was
-/// sent, `crossed` is light with the orthogonal polarisation. Both are empty if unpolarised light is sent.
+/// Cross sections in m2 by the polarisation of the returned light. `parallel` is the cross section for returned light
+/// with the transmitted polarisation. `crossed` is the cross section for the orthogonal polarisation. Both are empty if
+/// the transmitted light is unpolarised.
 template <class Value>
 struct ByPolarisation {
   Value total = {};
@@ -45,25 +46,25 @@ struct RangingPoint {
   CubeIndex index;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  /// Cross section of a plane mirror with the area of the beam, 4 pi A^2 / wavelength^2. For an array, the sum over all
-  /// lit cubes.
+  /// Cross section of a plane mirror with the area A of the beam, 4 pi A^2 / wavelength^2. For an array, this is the
+  /// sum over all illuminated cubes.
   double mirror_m2 = 0.0;
   ByPolarisation<double> centre;                             ///< exactly back to the source
   std::optional<ByPolarisation<AnnulusStatistics>> annulus;  ///< over the annulus of velocity aberration
   double diffracted_power = 0.0;  ///< fraction of the incident power that returns and is diffracted
-  /// Range correction of a single cube, and its usual approximation. Empty for arrays.
+  /// Range correction of a single cube, and the usual approximation of this correction. Both are empty for arrays.
   std::optional<double> range_correction_mm;
   std::optional<double> usual_range_correction_mm;
   // The following members are set for arrays.
   std::size_t lit_cubes = 0;
-  std::size_t traced_cubes = 0;  ///< number of different cubes and directions of light that were traced
+  std::size_t traced_cubes = 0;  ///< number of traces, one for each different cube and direction of light
   std::vector<CubeEcho> echoes;  ///< light of each lit cube in the direction of the receiver
   RangeDistribution ranges;
   PulseResponse response;  ///< empty for continuous light
   std::vector<Shot> shots;
 };
 
-/// Map of the far field of the first point, and its means over rings.
+/// Map of the far field of the first point, and its statistics on rings.
 struct RangingMap {
   double half_width_rad = 0.0;
   std::size_t points = 0;  ///< number of points along each axis
@@ -98,11 +99,11 @@ struct RangingResult {
   double elapsed_s = 0.0;
 };
 
-/// Study of a design. The constructor checks the design and the request, and run() computes the points.
+/// Ranging study of a design. The constructor checks the design and the request, and run() computes the points.
 class RangingStudy {
  public:
   /// \param cubes cubes of the file RangingRequest::cubes; empty without such a file
-  /// \throw InputError if the design is not a single cube corner, or for a request that is not allowed
+  /// \throw InputError if the design is not a single cube corner, or if the request is not allowed
   RangingStudy(design::Design design, const RangingRequest& request, std::vector<ArrayCube> cubes = {});
 
   RangingResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;

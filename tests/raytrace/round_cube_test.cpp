@@ -1,5 +1,6 @@
-// Tests of single cube corners with a circular face: closed forms of the effective aperture, the mount and the chamfer,
-// agreement of beams and rays, and agreement with hexagonal cube corners.
+// Tests of single cube corners with a circular face. Results are compared with closed forms for the effective aperture,
+// the mount and the chamfer. Results of beams are compared with rays, and results of round cube corners with hexagonal
+// cube corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +23,7 @@ using namespace raytrace;
 
 constexpr double kDiameter = 38.1;
 constexpr double kSilica = 1.4607;
-/// Largest difference of the area of a region of circles from that of the polygons with 180 sides.
+/// Maximum difference in area between an intersection of circles and the same intersection of polygons with 180 sides.
 constexpr double kPolygons = 2e-4;
 
 PartSpec part_of(const RoundCube& cube, double plate_mm = 0.86) {
@@ -33,8 +34,7 @@ double length_mm(const PartSpec& spec) {
   return element_depth_mm(spec.element) + spec.thickness_mm;
 }
 
-/// Returns optics without reflection at the face. Walls absorb all light, so that light that meets the cylinder does
-/// not come back.
+/// Returns optics without reflection at the face. Walls absorb all light, so that no light returns from the cylinder.
 Optics lossless(double index, bool has_mirrors) {
   Optics optics;
   optics.index = index;
@@ -76,13 +76,14 @@ double max_facet_cosine(double incidence_deg, double azimuth_deg, double index) 
   return most;
 }
 
-/// Disc along the direction of the source, in the plane of the face.
+/// Centre of a disc after its projection onto the plane of the face, along the direction of the source.
 struct CirclePosition {
   double at_mm;
   double radius_mm;
 };
 
-/// Returns the area of the points that are inside all discs, divided by the area of a circle. The points form a grid.
+/// Returns the area of the region inside all discs, divided by the area of a circle. The area is computed by counting
+/// the points of a grid.
 double common_area(const std::vector<CirclePosition>& discs, double radius_mm) {
   constexpr int kPoints = 800;
   const double step = 2.0 * radius_mm / kPoints;
@@ -104,7 +105,7 @@ TEST(RoundCube, FaceHasTheAreaOfTheCircle) {
   EXPECT_EQ(part.outline.size(), 180U);
   EXPECT_EQ(part.elements_full, 1);
   EXPECT_NEAR(part.element_depth_mm, kDiameter / std::numbers::sqrt2, 1e-12);
-  // The area of the facets follows from that of the face, because their normals have the same inclination.
+  // The area of the facets follows from the area of the face, because all facets have the same inclination.
   EXPECT_NEAR(part.retro_facet_area_mm2, std::numbers::sqrt3 * part.entrance_area_mm2, 1e-9);
 }
 
@@ -115,8 +116,8 @@ TEST(RoundCube, SolidsAreClosed) {
   expect_closed_part(errors);
 }
 
-// The part of the face that returns light is the intersection of the face with its image in the apex, projected along
-// the refracted light.
+// The region of the face that returns light is an intersection of two circles: the face, and its image in the apex. The
+// image is projected along the refracted light.
 TEST(RoundCube, MirrorsReturnTheOverlapOfTwoCircles) {
   for (const double plate_mm : {1e-6, 0.86, 6.0}) {
     const PartSpec spec = part_of({kDiameter}, plate_mm);
@@ -131,8 +132,8 @@ TEST(RoundCube, MirrorsReturnTheOverlapOfTwoCircles) {
   }
 }
 
-// An uncoated cube corner returns the same part of the light as mirrors while the reflection at all facets is total.
-// Otherwise, it returns less.
+// If the reflection at all facets is total, an uncoated cube corner returns the same fraction of the light as a cube
+// corner of mirrors. Otherwise, it returns less.
 TEST(RoundCube, TotalReflectionReturnsTheOverlapUpToItsLimit) {
   const PartSpec spec = part_of({kDiameter});
   const double critical = std::sqrt(1.0 - 1.0 / (kSilica * kSilica));
@@ -155,7 +156,7 @@ TEST(RoundCube, TotalReflectionReturnsTheOverlapUpToItsLimit) {
   EXPECT_GE(partial, 4);
 }
 
-// Without absorption, all light comes back at normal incidence, however often it is reflected by the face.
+// Without absorption, all light returns at normal incidence, even if the face reflects it several times.
 TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
   Optics silica;
   silica.index = kSilica;
@@ -166,8 +167,8 @@ TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
   EXPECT_NEAR(ledger[Account::retroreflected], 1.0, 1e-6);
 }
 
-// Light crosses four discs: the edge of the mount, the face, the face and the edge. Their positions follow from the
-// directions of the light in air and in the body.
+// Light crosses four discs: the edge of the mount and the face on its way in, and both again on its way out. Their
+// positions follow from the directions of the light in air and in the body.
 TEST(RoundCube, MountReturnsTheCommonAreaOfItsDiscs) {
   for (const auto& [recess_mm, mount_mm, index] :
        {std::tuple{3.0, kDiameter, kSilica}, std::tuple{8.0, kDiameter, kSilica},
@@ -206,7 +207,7 @@ TEST(RoundCube, ChamferReducesTheFace) {
     EXPECT_GE(ledger[Account::stopped], 1.0 - ratio * ratio - 1e-12);
     EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
   }
-  // The front reflection of the chamfer does not come back either.
+  // The chamfer also returns no light by reflection at its outer side.
   Optics silica;
   silica.index = kSilica;
   const Ledger ledger = beams(spec, silica, from(0.0));
@@ -214,7 +215,8 @@ TEST(RoundCube, ChamferReducesTheFace) {
   EXPECT_NEAR(ledger[Account::retroreflected], ratio * ratio, 1e-6);
 }
 
-// Light that has left through the face and is reflected by it obeys the law of reflection, not that of the cube corner.
+// Light that the outer side of the face reflects obeys the law of reflection. It does not return to the source like the
+// light of the cube corner.
 TEST(RoundCube, MountStopsTheReflectionOfTheFace) {
   RoundCube cube{kDiameter};
   cube.recess_mm = 6.0;
@@ -266,8 +268,8 @@ TEST(RoundCube, BeamsAndRaysAgree) {
     }
 }
 
-// An entrance surface in the plane of the face takes the light of the face. Its rays meet the chamfer and the mount in
-// other functions.
+// An entrance surface in the plane of the face has the same optical effect as the face. Other functions of the tracer
+// test its rays against the chamfer and the mount.
 TEST(RoundCube, AnEntranceSurfaceInThePlaneOfTheFaceChangesNothing) {
   RoundCube cube{kDiameter};
   cube.recess_mm = 4.0;
@@ -288,7 +290,7 @@ TEST(RoundCube, AnEntranceSurfaceInThePlaneOfTheFaceChangesNothing) {
   }
 }
 
-// A face that a hexagon cuts out of the circle is that of a hexagonal cube corner.
+// If a hexagonal outline cuts the circular face, the result is a hexagonal cube corner.
 TEST(RoundCube, WithAHexagonalOutlineIsTheHexagonalCube) {
   constexpr double kAperture = 10.0;
   std::vector<Vec2> corners;
@@ -309,8 +311,8 @@ TEST(RoundCube, WithAHexagonalOutlineIsTheHexagonalCube) {
     }
 }
 
-// A hollow cube corner is a cube corner of index 1. Its effective aperture follows from the direction of the light in
-// air.
+// A hollow cube corner is optically a cube corner with the index 1. Its effective aperture follows from the direction
+// of the light in air.
 TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
   Optics hollow;
   hollow.mirror_facets = true;
@@ -320,7 +322,7 @@ TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
     EXPECT_NEAR(ledger[Account::retroreflected],
                 overlap(0.5 * kDiameter, 2.0 * length_mm(spec) * tan_deg(incidence_deg)), kPolygons);
     EXPECT_EQ(ledger[Account::front_specular], 0.0);
-    // Light that misses a mirror passes through the plane of the face or through the cylinder.
+    // Light that misses a mirror leaves through the plane of the face or through the cylinder.
     EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::side_exit] + ledger[Account::returned_elsewhere], 1.0,
                 1e-9);
   }
@@ -350,8 +352,8 @@ TEST(RoundCube, MountStopsSingleRays) {
   // A ray that starts between the face and the edge of the mount is stopped only on its way back.
   EXPECT_NEAR(ray_through(part, {9.0, 0.0, 1.0}, down).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {7.5, 0.0, 1.0}, down).ledger[Account::retroreflected], 1.0, 1e-12);
-  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. Its way back crosses the plane of the edge
-  // outside.
+  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. On its way back, it crosses the plane of the edge
+  // outside the circle.
   EXPECT_NEAR(ray_through(part, {14.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {15.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::retroreflected], 1.0, 1e-12);
   EXPECT_EQ(ray_through(part, {30.0, 0.0, 50.0}, down).rays_missed, 1U);

@@ -99,8 +99,8 @@ TEST(ElementSample, SumsOfPolynomialsAreExact) {
   }
 }
 
-// Elements deviate randomly from a smooth function of the position. The errors of many such parts must have the spread
-// that the stated standard errors predict.
+// Readings of elements deviate randomly from a smooth function of the position. The actual errors for many such parts
+// must have the spread that the reported standard errors predict.
 TEST(ElementSample, ErrorsHaveTheStatedSpread) {
   constexpr int kParts = 400;
   const ElementSample sample(portions(), weights(), 96);

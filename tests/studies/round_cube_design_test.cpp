@@ -1,5 +1,4 @@
-// Tests of designs with `element.kind` = `"round_icc"`: their keys, the part that results, refused input, and
-// photometry.
+// Tests of designs with `element.kind` = `"round_icc"`: keys, the resulting part, refused input, and photometry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,7 +49,7 @@ TEST(RoundCubeDesign, LengthIsThatOfTheKeysOrTheMinimum) {
   EXPECT_GT(length_of(design()), min_mm);
   EXPECT_NEAR(length_of(design("length_mm = 19")), 19.0, 1e-12);
   EXPECT_NEAR(length_of(design("edge_length_mm = 33")), 33.0 / std::numbers::sqrt3, 1e-12);
-  // Errors of angle raise the facets. The face is above them.
+  // Angle errors raise the facets. The face must be above the facets.
   const design::Design raised = read(design("", "[surface]\ndihedral_error_arcmin = [20, -10, 5]\n"));
   EXPECT_GT(raised.part().thickness_mm, 0.01);
   EXPECT_NO_THROW(geometry::build_part(raised.part()));
@@ -166,7 +165,8 @@ TEST(RoundCubeDesign, SymmetryEndsWithTheOutline) {
       design::azimuth_symmetry(read(design("", "[outline]\npolygon_mm = [[0, 0], [10, 0], [10, 10], [0, 10]]\n"))));
 }
 
-// The far field of a round cube corner that is cut to a hexagon is that of the hexagonal cube corner.
+// If an outline cuts a round cube corner to a hexagon, its far field is equal to the far field of a hexagonal cube
+// corner.
 TEST(RoundCubeDesign, PhotometryIsThatOfAHexagonalCubeIfTheFaceIsAHexagon) {
   constexpr double kAperture = 2.0;
   std::vector<std::string> points;

@@ -60,8 +60,8 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
   return keys;
 }
 
-/// Returns the constraints of the study, and the limits of its tool and machine. A constraint of the study replaces the
-/// limit on the same quantity.
+/// Returns the constraints of the study, and the constraints that follow from its tool and its machine. If the study
+/// constrains a quantity, this constraint replaces the limit of the tool or the machine.
 std::vector<Constraint> constraints_of(const Study& study) {
   std::vector<Constraint> constraints = read_constraints(study);
   const std::size_t given = constraints.size();

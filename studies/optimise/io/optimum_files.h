@@ -15,7 +15,8 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
 std::string front_csv(const Study& study, const Optimum& optimum);
 
 /// Returns all evaluated designs as CSV, with one line for each design. The columns contain the parameters, the
-/// quantities with their standard errors, the objective, and whether the design satisfies all constraints.
+/// quantities with their standard errors, and the objective. The last two columns state whether the design satisfies
+/// all constraints and, if it does not, the reason.
 std::string designs_csv(const Study& study, const Optimum& optimum);
 
 /// Returns the text of the design file of a variant.

@@ -129,14 +129,14 @@ constexpr std::array<std::string_view, 3> kErrorColumns = {"dihedral_error_1_arc
                                                            "dihedral_error_3_arcsec"};
 constexpr std::size_t kAxisColumn = 3;
 
-/// Columns of a table of cubes, in the order in which they must be.
+/// Columns of a table of cubes, in their required order.
 struct CubeColumns {
   std::vector<std::string_view> names;
   std::optional<std::size_t> clocking;
   std::optional<std::size_t> errors;  ///< index of the first of three columns
 };
 
-/// Returns the columns that a table must have. Columns that are optional are included if the table has any of them.
+/// Returns the columns that a table must have. If the table has any optional column, the optional columns are included.
 CubeColumns columns_of(std::string_view text, const std::string& source_name) {
   const CsvReader table(text, source_name, kMaxCubeBytes);
   CubeColumns columns{{kCubeColumns.begin(), kCubeColumns.end()}, {}, {}};

@@ -24,7 +24,7 @@ std::vector<ArrayCube> parse_cubes(std::string_view text, const std::string& sou
 /// \throw InputError with file, line and column
 std::vector<ArrayCube> parse_cube_table(std::string_view text, const std::string& source_name);
 
-/// Reads a file of cubes. The extension .csv selects the table, any other extension selects TOML.
+/// Reads a file of cubes. A file with the extension .csv is read as a table, and any other file as TOML.
 /// \throw InputError that names the field `cubes`
 std::vector<ArrayCube> read_cubes(const std::filesystem::path& file);
 

@@ -12,13 +12,14 @@ namespace retrace::studies {
 std::string ranging_json(const RangingResult& result);
 /// Returns a table with one line for each point.
 std::string ranging_csv(const RangingResult& result);
-/// Returns the map of the first point as CSV with one line for each direction. Empty if there is no map.
+/// Returns the map of the first point as CSV with one line for each direction. The result is empty if there is no map.
 std::string ranging_map_csv(const RangingResult& result);
-/// Returns the cubes that the first point lights, with their ranges and cross sections. Empty for a single cube.
+/// Returns the illuminated cubes of the first point with their ranges and cross sections, as CSV. The result is empty
+/// for a single cube.
 std::string cubes_csv(const RangingResult& result);
-/// Returns the pulse response of the first point. Empty for continuous light.
+/// Returns the pulse response of the first point as CSV. The result is empty for continuous light.
 std::string response_csv(const RangingResult& result);
-/// Returns the single shots of the first point. Empty without shots.
+/// Returns the single shots of the first point as CSV. The result is empty if no shots are requested.
 std::string shots_csv(const RangingResult& result);
 /// Returns the result as lines for the terminal.
 std::string ranging_table(const RangingResult& result);

@@ -212,7 +212,8 @@ std::string rre_json(const RreResult& result) {
 
 std::string rre_csv(const RreResult& result) {
   CsvWriter csv;
-  // Columns of accounts that are not always listed are written only if at least one value is not 0.
+  // Some accounts are optional (see is_listed()). The column of an optional account is written only if its power is not
+  // 0 for at least one point.
   std::vector<std::size_t> accounts;
   std::vector<std::string_view> names;
   for (std::size_t k = 0; k < kAccountCount; ++k) {

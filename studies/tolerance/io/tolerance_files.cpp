@@ -72,7 +72,7 @@ std::vector<std::size_t> by_contribution(const std::vector<compute::SobolIndex>&
   return order;
 }
 
-/// Returns a mean with as many digits as its confidence interval allows, and half of the width of the interval.
+/// Returns a mean and half of the width of its confidence interval as text. This width determines the number of digits.
 std::string mean_text(double mean, const compute::IntervalEstimate& interval) {
   const double half = 0.5 * (interval.high - interval.low);
   if (!(half > 0.0)) return fmt::format("{:.6g}", mean);

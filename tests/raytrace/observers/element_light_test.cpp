@@ -167,10 +167,10 @@ Optics ideal_mirrors() {
   return optics;
 }
 
-// A cube corner of mirrors behind a sphere of radius R returns a plane wave through its hexagon, with the additional
-// optical path (n - 1) r^2 / R, because light enters at the distance r from the apex and leaves at -r. Along the path L
-// in the part, the wave converges: its hexagon shrinks by the fraction c = L (n - 1) / (n R), and the additional path
-// increases by the fraction c / 2.
+// A cube corner of mirrors is behind a sphere of radius R. Light enters at the position r relative to the apex and
+// leaves at -r. The returned wave therefore has the additional optical path (n - 1) r^2 / R across its hexagon. Along
+// the path L in the part, the wave converges. With c = L (n - 1) / (n R), its hexagon shrinks by the fraction c, and
+// the additional path increases by the fraction c / 2.
 TEST(ElementLight, SphereAgreesWithTheTransformOfItsWavefront) {
   const Part part = build_part(single(HexagonalCube{3.0}, 0.3));
   const Vec2 middle = bounding_box(part.outline).centre();
@@ -225,7 +225,7 @@ TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
       directions.push_back(frame.direction({0.0, minutes * kArcmin}));
     FarFieldCollector collector(part, light, policy);
     double power = 0.0;
-    // The cut-off is relative to the light on the part, and not to the light on an element.
+    // The cut-off of beams is relative to the light on the whole part, and not to the light on a single element.
     BeamTracer(part).trace(pmma(), light, {0.5}, beams(1e-8), nullptr, [&](const ReturnedBeam& beam) {
       if (beam.depth == 0) return;
       collector.add(beam);

@@ -31,13 +31,15 @@ constexpr double kWaveNm = 550.0;
 constexpr double kWave = 1e-6 * kWaveNm;
 constexpr double kArcmin = kDeg / 60.0;
 
-/// Wave behind a lens over an ideal cube corner, from rays. A ray along -z enters the spherical surface of radius R, is
-/// reversed at the apex, and leaves through the surface. The apex is on the axis of the sphere. Each ray carries the
-/// amplitude sqrt(dA / dA'), where dA and dA' are the areas of a bundle of rays before and behind the lens.
+/// Wave that returns from an ideal cube corner behind a lens, computed from rays. A ray along -z enters the spherical
+/// surface of radius R, is reversed at the apex, and leaves through the surface. The apex is on the axis of the sphere.
+/// Each ray carries the amplitude sqrt(dA / dA'), where dA and dA' are the areas of a bundle of rays before and behind
+/// the lens.
 class WaveOfRays {
  public:
   /// \param depth_mm distance of the apex from the highest point of the sphere
-  /// \param moves_rays if false, rays leave where they would leave without a lens, and all amplitudes are equal
+  /// \param moves_rays if false, rays leave at the points where they would leave without a lens, and all amplitudes are
+  ///        equal
   WaveOfRays(const Polygon& hexagon, double radius_mm, double depth_mm, bool moves_rays)
       : radius_mm_(radius_mm), depth_mm_(depth_mm) {
     const Rectangle box = bounding_box(hexagon);
@@ -79,7 +81,7 @@ class WaveOfRays {
   static constexpr int kPixels = 100;
   struct Sample {
     Vec2 at = Vec2::Zero();  ///< intersection with the plane that touches the sphere
-    double path_mm = 0.0;    ///< optical path from this plane to this plane
+    double path_mm = 0.0;    ///< optical path of the ray, which starts and ends in this plane
     double weight = 0.0;
   };
 
@@ -167,7 +169,7 @@ TEST(LensWave, AmplitudeIsTheSquareRootOfTheJacobian) {
   EXPECT_GT(constant_error, 0.01);
 }
 
-/// Power of the light that has entered, by its destination, as fractions of the incident power.
+/// Powers of the light that has entered, as fractions of the incident power. Each member is a destination of the light.
 struct Destinations {
   double within_cone = 0.0, elsewhere = 0.0, sides = 0.0, back = 0.0, truncated = 0.0;
 
@@ -197,7 +199,7 @@ Destinations by_beams(const Part& part, const Surface& surface, const Optics& op
                                               }
                                             });
     const Ledger& ledger = result.ledgers[0];
-    // A lossless face ends light beyond the critical angle, which no observer receives.
+    // At a lossless face, light beyond the critical angle ends. No observer receives this light.
     if (optics.lossless_entrance)
       all.elsewhere +=
           scene->power_factor * (ledger[Account::retroreflected] + ledger[Account::returned_elsewhere] - observed);
@@ -217,9 +219,9 @@ class LensPower : public ::testing::TestWithParam<Lens> {};
 
 // The retroreflected power agrees with Monte Carlo, which refracts every ray at the exact surface. With a lossless
 // surface, the accounts add up to the incident power. With Fresnel reflection, the light is so oblique that the outer
-// side reflects nothing into the cone. Light that leaves an element near a side of the part converges or diverges,
-// which the model neglects when it determines whether the light meets the side. This error is proportional to the
-// curvature.
+// side of the surface reflects nothing into the cone. Light that leaves an element near a side of the part converges or
+// diverges. The model neglects this when it determines whether the light meets the side. This error is proportional to
+// the curvature.
 TEST_P(LensPower, AgreesWithRaysInEachAccount) {
   const Lens lens = GetParam();
   const Part part = build_part(finite(HexagonalCube{3.0}, Arrangement::honeycomb, 18.0, 14.0, 2.5));

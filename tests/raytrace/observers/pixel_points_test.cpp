@@ -42,7 +42,8 @@ TEST(PixelPoints, AreEqualIfAllPixelsHaveTheSameNoise) {
 }
 
 /// Noisy pixels and the two pixels around them have more points than all others. Every number is the minimum times a
-/// power of two. The sum is near 2.7 times that of equal numbers, within the rounding to powers of two.
+/// power of two. The sum of the numbers is about 2.7 times the sum for equal numbers, within the rounding to powers of
+/// two.
 TEST(PixelPoints, AreConcentratedOnNoisyPixels) {
   std::vector<PixelMoments> moments(kColumns * kRows, constant(7.0));
   for (std::size_t row = 10; row < 18; ++row)
@@ -67,8 +68,8 @@ TEST(PixelPoints, AreConcentratedOnNoisyPixels) {
   EXPECT_LT(ratio, 1.0 + 1.7 * std::numbers::sqrt2);
 }
 
-/// If a picture has two kinds of noisy areas, the numbers of points are proportional to the standard deviations to the
-/// power of 2/3, within the rounding to powers of two.
+/// The picture has two kinds of noisy areas. Within the rounding to powers of two, the numbers of points are
+/// proportional to the 2/3 power of the standard deviations.
 TEST(PixelPoints, IncreaseWithTheStandardDeviation) {
   std::vector<PixelMoments> moments(kColumns * kRows, constant(0.0));
   for (std::size_t row = 5; row < 15; ++row)

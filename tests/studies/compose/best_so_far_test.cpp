@@ -60,7 +60,7 @@ TEST(BestSoFar, AnInterruptedCompositionHasThePartOfTheFinishedCells) {
       single = std::max(single, *std::ranges::min_element(cell.mixed.goals));
     EXPECT_GE(composition.best->mixture.min_goal, single - 1e-9);
     EXPECT_FALSE(composition_text(study, request, composition).empty());
-    // The next run continues with the stored cells, and its result is that of a run without interruption.
+    // The next run continues with the stored cells. Its result is equal to the result of a run without interruption.
     const Study whole = lobes("", nullptr, nullptr, 0);
     compute::ResultStore fresh("", compose_layout(whole), compute::IfExists::refuse);
     const Composition resumed = compose(whole, request, store, nullptr, nullptr);
@@ -91,7 +91,7 @@ TEST(BestSoFar, FractionsAreMultiplesOfTheStep) {
   EXPECT_LE(composition.best->mixture.merit, composition.unlimited_merit + 1e-12);
 }
 
-/// For three cells, all neighbouring multiples are tried one by one.
+/// The test compares the result with all neighbouring multiples of the step, for three cells.
 TEST(BestSoFar, TheRoundedMixtureIsTheBestOfItsNeighbours) {
   const std::vector<MixedCell> cells = {
       {{1.0, 0.2, 0.3}, {0.5}, 0.0}, {{0.1, 0.9, 0.4}, {1.5}, 0.1}, {{0.3, 0.2, 1.1}, {2.5}, 0.0}};

@@ -155,8 +155,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
 }
 
 // If the part is traced as a whole, its RRE is a mean over the zones, weighted by their areas. The value of each zone
-// is the RRE of an infinite array of its cells. Borders cause a difference, which is inversely proportional to the
-// size.
+// is the RRE of an infinite array of its cells. The borders between zones cause a difference that is inversely
+// proportional to the size of the part.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;

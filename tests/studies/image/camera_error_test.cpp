@@ -107,7 +107,7 @@ TEST(CameraError, IsRightWithinAnArray) {
   EXPECT_LT(sum, 1.1);
 }
 
-/// In a picture of which most pixels are dark, noisy pixels have more paths than the others. The reported errors of
+/// In a picture with mostly dark pixels, noisy pixels have more paths than the other pixels. The reported errors of
 /// these pixels are correct on average, and none of them is too small.
 TEST(CameraError, IsRightForPixelsWithMorePaths) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
@@ -129,7 +129,7 @@ TEST(CameraError, IsRightForPixelsWithMorePaths) {
     sum += variance;
   }
   ASSERT_GT(compared, 5U);
-  // With 32 passes, the mean of 1 / s^2 of normally distributed values is 31 / 29 of 1 / sigma^2.
+  // For 32 normally distributed values with the sample variance s^2, the mean of 1 / s^2 is 31 / 29 times 1 / sigma^2.
   const double expected = (kPasses - 1.0) / (kPasses - 3.0);
   const double error = expected * std::sqrt(2.0 / (kSeeds - 1.0) / static_cast<double>(compared));
   EXPECT_NEAR(sum / static_cast<double>(compared), expected, 4.0 * error);

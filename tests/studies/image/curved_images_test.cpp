@@ -94,7 +94,7 @@ TEST(CurvedCamera, PartIsInvisibleInUniformLight) {
     }
 }
 
-// Shells that do not absorb light are invisible in uniform light, too. The light that they reflect comes from the
+// Shells that do not absorb light are also invisible in uniform light. The light that they reflect comes from the
 // surroundings. A plate that absorbs light darkens the background behind it by its transmittance at normal incidence.
 TEST(CurvedCamera, ShellsAreInvisibleInUniformLight) {
   const Part part = bricks();

@@ -24,13 +24,13 @@ struct Problem {
   std::function<double(std::size_t combination, const Position&)> value;
   double maximum = 0.0;
   std::size_t combinations = 1;
-  /// Amount by which a limit is exceeded, which is observed together with the value. May be empty.
+  /// Amount by which a limit is exceeded. It is observed together with the value. Empty if the problem has no limit.
   std::function<double(const Position&)> excess = {};
   bool is_cheap = false;           ///< true: the limit can be checked without an observation
   std::vector<double> peaks = {};  ///< positions of peaks that the problem reports
 };
 
-/// Pseudo-random number from -1 to 1 that depends only on the arguments (SplitMix64).
+/// Returns a pseudo-random number from -1 to 1 that depends only on the arguments (SplitMix64).
 double hashed(std::uint64_t a, std::uint64_t b) {
   std::uint64_t x = a * 0x9e3779b97f4a7c15U + b * 0xbf58476d1ce4e5b9U + 0x94d049bb133111ebU;
   for (int k = 0; k < 3; ++k) {
@@ -41,13 +41,13 @@ double hashed(std::uint64_t a, std::uint64_t b) {
   return 2.0 * static_cast<double>(x >> 11U) / 9007199254740992.0 - 1.0;
 }
 
-/// Standard normal number that depends only on the arguments.
+/// Returns a normally distributed number that depends only on the arguments.
 double normal(std::uint64_t a, std::uint64_t b) {
   const double u = 0.5 + 0.4999999999 * hashed(a, 2 * b);
   return std::sqrt(-2.0 * std::log(u)) * std::cos(std::numbers::pi * hashed(a, 2 * b + 1));
 }
 
-/// A problem whose values have random errors. Errors of different points are partly common.
+/// Problem whose values have random errors. A fraction of the error is common to all points.
 class Noisy : public studies::SearchedFunction {
  public:
   /// \param sigma standard error of an observation with the scale 1
@@ -96,7 +96,7 @@ class Noisy : public studies::SearchedFunction {
   }
 
  private:
-  /// Error of a trial in standard errors. The common part is a smooth function of the position.
+  /// Returns the error of a trial in standard errors. The common fraction is a smooth function of the position.
   double error_of(const SearchTrial& trial) const {
     const std::uint64_t stream = seed_ * 1000 + trial.level.replicate * 10 + (trial.level.scale > 3.0 ? 1U : 0U);
     double smooth = normal(stream, 1);
@@ -121,8 +121,8 @@ double sum_of_squares(const Position& x, const Position& centre, const Position&
 }
 
 double teeth(double x) {
-  // The value falls as x grows, and jumps up wherever 1 / x is a whole number, as the number of elements of a part
-  // does.
+  // Fraction of a part of the length 1 that whole elements fill, as a function of their size. It has a peak at each
+  // size for which 1 / size is a whole number. The second term makes one peak the best.
   const double size = 0.02 + 0.08 * x;
   return std::floor(1.0 / size + 1e-9) * size - 2.0 * std::pow(x - 0.43, 2);
 }
@@ -139,7 +139,7 @@ double best_tooth() {
   return best;
 }
 
-/// Problems with maxima in closed form.
+/// Returns problems whose maxima are known in closed form.
 std::vector<Problem> problems() {
   const auto line = [](auto f) { return [f](std::size_t, const Position& x) { return f(x[0]); }; };
   const auto plane = [](auto f) { return [f](std::size_t, const Position& x) { return f(x[0], x[1]); }; };
@@ -250,8 +250,8 @@ TEST(NoisySearch, FindsTheKnownMaximumWithoutNoise) {
   }
 }
 
-/// Noise of a stated size: the loss is within the stated error in 95 % of all runs, and the search needs at most 1.5
-/// times the observations of a search without noise.
+/// In 95 % of all runs with noise, the loss must be below the reported error. A search needs at most 1.5 times as many
+/// observations as a search without noise.
 TEST(NoisySearch, StatesItsErrorForTwentyProblems) {
   constexpr int kSeeds = 25;
   const std::vector<Problem> all = problems();
@@ -307,7 +307,7 @@ TEST(NoisySearch, CommonRandomNumbersMakeDifferencesAccurate) {
   const Estimate difference = studies::paired_difference(a, b);
   EXPECT_NEAR(difference.value, 0.1, 5e-3);
   EXPECT_LT(difference.std_error, 5e-3);
-  // Without common random numbers, the error is that of independent values.
+  // With a single replicate, the error of the difference is the error for independent values.
   const Estimate single = studies::paired_difference({{0.5, 3.0}}, {{0.4, 4.0}});
   EXPECT_DOUBLE_EQ(single.std_error, 5.0);
 }

@@ -33,8 +33,8 @@ double number(const ParameterValue& value) {
   return std::get<double>(value.shown);
 }
 
-/// A quantity with a known function of the thickness and a random error. The error depends on the seed and on the
-/// target error of the analysis, like the error of a traced quantity.
+/// Quantity that is the sum of a known function of the thickness and a random error. The error depends on the seed and
+/// on the target error of the analysis, like the error of a traced quantity.
 class NoisyQuantity : public Quantity {
  public:
   using Function = std::function<double(double thickness_mm)>;
@@ -87,12 +87,12 @@ TEST(OptimiseNoise, TheResultIsRoundAndItsErrorIsStated) {
   EXPECT_LE(hill(1.52) - hill(x), optimum.resolution);
   EXPECT_NEAR(100.0 * x, std::round(100.0 * x), 1e-9) << "at most two decimals";
   EXPECT_NEAR(*optimum.best->objective, hill(x), 3.0 * optimum.best->objective_error);
-  // Only few designs are computed with a small error.
+  // Only a few designs are computed with a small error.
   const auto accurate =
       std::ranges::count_if(optimum.designs, [](const Variant& variant) { return variant.objective_error < 3e-4; });
   EXPECT_LE(accurate, 12);
   EXPECT_GE(optimum.designs.size(), 60U);
-  // A resumed search computes nothing again and has the same result.
+  // A resumed search recomputes no design and has the same result.
   const std::size_t points = store.finished().size();
   const Optimum again = optimise(study, request, store, nullptr, nullptr);
   EXPECT_EQ(store.finished().size(), points);
@@ -115,7 +115,7 @@ class BestDesigns : public OptimiseObserver {
   std::size_t count = 0;
 };
 
-/// Interruptions at twelve different numbers of computed designs.
+/// The search is interrupted after twelve different numbers of computed designs.
 TEST(OptimiseNoise, AnInterruptionLosesNoFinishedDesign) {
   const Study whole = noisy_study(hill);
   const OptimiseRequest request = read_optimise(whole);
@@ -145,7 +145,7 @@ TEST(OptimiseNoise, AnInterruptionLosesNoFinishedDesign) {
     // The best design so far is a valid design file.
     const std::string text = variant_design_text(study, *optimum.best, "# best\n");
     EXPECT_EQ(design::parse_design(text, "best.toml").part().thickness_mm, number(optimum.best->values[0]));
-    // The next run continues and has the result of a run without interruption.
+    // The next run continues the search. Its result is equal to the result of a run without interruption.
     const Optimum resumed = optimise(whole, request, store, nullptr, nullptr);
     EXPECT_TRUE(resumed.complete);
     EXPECT_EQ(optimum_json(whole, request, resumed, 0.0), expected);
@@ -212,14 +212,15 @@ TEST(WholeSizes, RoundValuesBeginWithTheRoundest) {
   ASSERT_FALSE(values.empty());
   EXPECT_EQ(values.front(), 0.5);
   EXPECT_EQ(round_values(0.0314, 0.03, 0.033, {}).front(), 0.03);
-  // 0.45 and 0.46 are equally round multiples of 0.01, but only one divides 9.2 mm.
+  // 0.45 and 0.46 are equally round multiples of 0.01. Only for 0.46 does a whole number of elements fill 9.2 mm.
   const WholeSizes sizes = sizes_of({"element.base_mm"}, {"array.x_length_mm=9.2"});
   const std::vector<double> near = round_values(0.452, 0.449, 0.461, sizes);
   const auto first = std::ranges::find(near, 0.46);
   EXPECT_NE(first, near.end());
 }
 
-/// The optimum of a study with a coarse scan lies between its points. The sizes that divide the part are found.
+/// The optimum is between the points of a coarse scan. The search must find it, because it tries sizes for which a
+/// whole number of elements fills the part.
 TEST(WholeSizes, TheOptimumIsASizeThatDividesThePart) {
   const Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = [\"element.base_mm\", \"element.width_mm\"]\n"
@@ -293,7 +294,7 @@ TEST(MachiningLimits, NewKeysAreChecked) {
   EXPECT_EQ(rounding("\"none\""), "read");
 }
 
-/// The process of a file gives the values that [machining] does not give.
+/// Values that [machining] does not give are taken from the process file.
 TEST(MachiningLimits, AProcessGivesTheOtherValues) {
   const auto machining = [](const std::string& keys) {
     const Study study = parse_study(machining_study(keys), kStudies + "study.toml");
@@ -305,8 +306,8 @@ TEST(MachiningLimits, AProcessGivesTheOtherValues) {
   EXPECT_NE(named.roughing_feed_mm_per_min, defaults.roughing_feed_mm_per_min);
 }
 
-/// On the ideal machine, A tilts the facets to +-45 degrees about X, and C rotates by 180 degrees for facet 2. The
-/// travel follows from the corners of the part.
+/// On the ideal machine, A tilts the facets by +-45 degrees about X, and C rotates by 180 degrees for facet 2. The
+/// remaining travel follows from the corners of the part.
 TEST(MachinePlan, TravelIsThatOfTheFarthestCorner) {
   const design::Design design =
       design::read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/rtp_brick_1mm.toml",
@@ -320,7 +321,7 @@ TEST(MachinePlan, TravelIsThatOfTheFarthestCorner) {
   // At 45 degrees, y and z are at most (29.5 + depth) / sqrt(2).
   EXPECT_NEAR(*plan.travel_mm, 120.0 - (29.5 + 0.2) / std::numbers::sqrt2, 0.5);
   ASSERT_TRUE(plan.time_s.has_value());
-  // The plan has other retracts than the closed form, and accelerations and moves between elements.
+  // The plan has different retracts than the closed form. It also includes accelerations and moves between elements.
   const double path_s = static_cast<double>(plan.elements) *
                         seconds_per_element(std::get<geometry::RtpElement>(design.part().element), process);
   EXPECT_NEAR(*plan.time_s, path_s, 0.05 * path_s);

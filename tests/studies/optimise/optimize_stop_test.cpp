@@ -1,4 +1,4 @@
-// Tests of the command `retrace optimize`: interruptions, kills, refused runs, and its files.
+// Tests of the command `retrace optimize`: interrupted, killed and refused runs, and output files.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Prisms with rounded roots and rough facets, which are traced by rays.
+/// Returns a design of prisms with rounded roots and rough facets. Such prisms are traced by rays.
 std::string rough_design() {
   return "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nx_length_mm = "
          "30\n"
@@ -47,11 +47,12 @@ TEST(OptimizeStop, AnInterruptWritesTheBestSoFar) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   child.interrupt(SIGINT);
   const Outcome outcome = child.wait(patient(60));
-  if (outcome.code == 0) return;  // the run was faster than the interrupt
+  if (outcome.code == 0) return;  // the run ended before the interrupt
   EXPECT_EQ(outcome.code, 130);
   ASSERT_TRUE(fs::exists(folder.path() / "out/best.toml"));
   expect_valid_best(folder);
-  // On a busy machine, the program can miss its deadline after an interrupt. The store and the best design remain.
+  // On a busy machine, the program may be ended before it writes its results. The store and the best design are still
+  // available.
   if (!fs::exists(folder.path() / "out/optimum.json")) return;
   const Json json = folder.json("out/optimum.json");
   EXPECT_EQ(json["complete"], false);

@@ -177,8 +177,8 @@ TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
   EXPECT_GT(std::abs(beams.u) + std::abs(beams.v), 0.1 * beams.i);
 }
 
-/// The power beyond a large angle a falls as 1 / a. The limit for infinite angles therefore follows from a line through
-/// the powers within several angles, as a function of 1 / a.
+/// The power beyond a large angle a falls as 1 / a. The powers within several angles are therefore fitted by a line as
+/// a function of 1 / a. The line gives the limit for infinite angles.
 TEST(CubeField, IntegralIsTheDiffractedPower) {
   SectorCube cube;
   cube.aperture_mm = 4.0;
@@ -200,7 +200,8 @@ TEST(CubeField, IntegralIsTheDiffractedPower) {
 }
 
 /// A cube with equal errors and light along its axis is symmetric about the plane y = 0 and under rotations by 120
-/// degrees. Circular light has no direction across the beam. A reflection exchanges right- and left-handed light.
+/// degrees. Circular light has no preferred direction across the beam. A reflection exchanges right- and left-handed
+/// light.
 TEST(CubeField, CircularLightHasTheSymmetryOfTheCube) {
   SectorCube cube;
   cube.errors_arcsec = {1.25, 1.25, 1.25};
@@ -225,7 +226,7 @@ TEST(CubeField, CircularLightHasTheSymmetryOfTheCube) {
   }
 }
 
-/// Light that enters and leaves in front of the apex travels the path 2 L sqrt(n^2 - sin^2 i).
+/// The phase of light that is returned through the apex corresponds to the optical path 2 L sqrt(n^2 - sin^2 i).
 TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   const std::string text =
       "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
@@ -237,7 +238,8 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   const double edge = 30.0 / (2.0 * std::sqrt(2.0 / 3.0));
   EXPECT_NEAR(corner.depth_mm(), 2.0 + 2.0 * edge / std::sqrt(3.0), 1e-9);
   for (const double sine : {0.0, 0.3, 0.6}) {
-    // Phase in radians per vacuum wave number: w -> path / w. The derivative with respect to 1 / w is the group path.
+    // Phase in cycles at the wavelength w: path / w. The derivative of the phase with respect to 1 / w is the group
+    // path.
     const auto phase = [&](const studies::CubeIndex& at) {
       return corner.depth_mm() * std::sqrt(at.index * at.index - sine * sine) / at.wavelength_nm;
     };
@@ -253,7 +255,7 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   EXPECT_NEAR(studies::usual_range_correction_mm(20.0, 1.48, 0.5), 20.0 * std::sqrt(1.48 * 1.48 - 0.25), 1e-9);
 }
 
-/// The dispersion formula of fused silica has a closed derivative.
+/// The derivative of the dispersion formula of fused silica is known in closed form.
 TEST(CubeCorner, GroupIndexIsExact) {
   const std::string text =
       "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
@@ -273,7 +275,8 @@ TEST(CubeCorner, GroupIndexIsExact) {
     EXPECT_NEAR(at.index, n, 1e-12);
     EXPECT_NEAR(at.group_index, n - w2 * slope / n, 1e-9);
   }
-  // The index relative to vacuum rises by (n^2 - 1) / (2 n) D0 t. That of air falls, which adds about 7e-5.
+  // At the temperature difference t, the index relative to vacuum increases by (n^2 - 1) / (2 n) D0 t. The index of air
+  // decreases, which adds about 7e-5.
   const CubeCorner hot(
       design::with(design::parse_design(text, "cube.toml"), std::vector<std::string>{"body.temperature_c=80"}), {532.0},
       false);

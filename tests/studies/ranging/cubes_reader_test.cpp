@@ -1,4 +1,4 @@
-// Files of cubes: rings, grids, single cubes and tables, and their errors.
+// Tests of the reader for files of cubes: rings, grids, single cubes, tables and error messages.
 
 #include <gtest/gtest.h>
 

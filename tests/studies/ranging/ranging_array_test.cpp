@@ -1,4 +1,4 @@
-// Arrays of cube corners: sums of single cubes, ranges, pulses and single shots.
+// Tests of arrays of cube corners: sums of single cubes, ranges, pulses and single shots.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ CubeSet set_of(std::vector<ArrayCube> cubes) {
   return set;
 }
 
-/// Cubes with random positions, axes within 40 degrees of +z, and random clocking.
+/// Returns cubes with random positions, random clocking, and axes within 40 degrees of +z.
 std::vector<ArrayCube> random_array(int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -55,7 +55,8 @@ std::vector<ArrayCube> random_array(int count) {
   return cubes;
 }
 
-/// Returns the Stokes parameters of a single cube, from a trace in its own frame without use of symmetries.
+/// Returns the Stokes parameters of a single cube. The light is traced in the frame of this cube, and symmetries are
+/// not used.
 Stokes alone(const CubeCorner& corner, const ArrayCube& cube, const raytrace::ReturnFrame& frame, const Vec2& angles,
              const Stokes& sent) {
   const Eigen::Matrix3d own = studies::array_from_cube(cube).transpose();
@@ -63,7 +64,7 @@ Stokes alone(const CubeCorner& corner, const ArrayCube& cube, const raytrace::Re
   const Vec3 right = raytrace::source_axis(to_source);
   const double c = right.dot(own * frame.right);
   const double s = right.dot(own * frame.up);
-  Eigen::Matrix2d axes;  // axes of the cube from those of the array
+  Eigen::Matrix2d axes;  // maps the axes of the array to the axes of the cube
   axes << c, s, -s, c;
   const std::vector<Vec3> directions = {own * frame.direction(angles)};
   studies::DirectionField field = corner.field(to_source, 0, nullptr).at(directions).front();
@@ -142,7 +143,7 @@ TEST(RangingArray, ResponseHasThePowerAndTheMomentsOfTheArray) {
   EXPECT_NEAR(squares / sum, all.rms_mm * all.rms_mm + sigma * sigma, 1e-3);
 }
 
-/// Echoes of equal strength and polarisation.
+/// Returns echoes of equal strength and polarisation.
 std::vector<CubeEcho> equal_echoes(std::size_t count, double distance_mm) {
   std::vector<CubeEcho> echoes;
   for (std::size_t k = 0; k < count; ++k)
@@ -160,13 +161,13 @@ TEST(RangingShots, ContinuousLightHasTheMomentsOfRandomPhasors) {
   const double mean = 4e4 * static_cast<double>(count);
   EXPECT_NEAR(summary.mean_m2, mean, 5.0 * mean / std::sqrt(static_cast<double>(shots)));
   EXPECT_NEAR(summary.deviation_m2, mean * std::sqrt(1.0 - 1.0 / static_cast<double>(count)), 0.03 * mean);
-  // Fractions above the mean and above twice the mean of an exponential distribution.
+  // For an exponential distribution, the fractions above the mean and above twice the mean are known.
   for (const double times : {1.0, 2.0}) {
     const auto above = std::count_if(simulated.begin(), simulated.end(),
                                      [&](const studies::Shot& shot) { return shot.cross_section_m2 > times * mean; });
     EXPECT_NEAR(static_cast<double>(above) / static_cast<double>(shots), std::exp(-times), 0.02);
   }
-  // Other seeds give other shots, and equal seeds equal ones.
+  // Different seeds give different shots, and equal seeds give equal shots.
   EXPECT_EQ(studies::simulated_shots(echoes, {3, sent, std::nullopt, 1}, nullptr)[2].cross_section_m2,
             simulated[2].cross_section_m2);
   EXPECT_NE(studies::simulated_shots(echoes, {3, sent, std::nullopt, 2}, nullptr)[2].cross_section_m2,
@@ -181,7 +182,7 @@ TEST(RangingShots, ShortPulsesDoNotInterfere) {
   }
 }
 
-/// A long pulse is continuous light. Two cubes then give the power 2 + 2 cos f.
+/// A very long pulse acts like continuous light. Two cubes with the phase difference f then give the power 2 + 2 cos f.
 TEST(RangingShots, LongPulsesInterfere) {
   const std::vector<CubeEcho> echoes = equal_echoes(2, 0.01);
   const Stokes sent{1.0, 0.0, 0.0, 1.0};
@@ -218,7 +219,7 @@ TEST(Aberration, OfAnOrbitLiesBetweenBothDirectionsOfTheVelocity) {
 }
 
 TEST(Aberration, StatisticsOfAPolynomialAreExact) {
-  // 2 + x + 3 (x^2 + y^2) on the annulus from 1 to 2, in units of 1e-5 rad.
+  // The function 2 + x + 3 (x^2 + y^2) on the annulus from 1 to 2, in units of 1e-5 rad.
   const auto values = [](const std::vector<Vec2>& angles) {
     std::vector<double> result;
     for (const Vec2& a : angles) result.push_back(2.0 + 1e5 * a.x() + 3e10 * a.squaredNorm());
@@ -257,7 +258,7 @@ TEST(Ranging, PolarisationsAddUpToTheTotal) {
   EXPECT_FALSE(unpolarised.points[0].centre.crossed);
 }
 
-/// Mirrors reverse the sense of circular light, and keep linear light.
+/// A cube of mirrors reverses the sense of circular light and preserves linear polarisation.
 TEST(Ranging, MirrorsCrossCircularLight) {
   const design::Design mirrors = design::with(
       cube_design("0"), std::vector<std::string>{"idealisation.facets=mirror", "idealisation.entrance=lossless"});

@@ -1,9 +1,10 @@
 #pragma once
 
-// Independent model of the far field of a solid cube corner. It follows sub-pixels of the entrance face through the
-// error-free cube to find the sector of each pixel. The Jones matrix and the direction of each sector are computed from
-// Fresnel's formulas at the facets with their errors. A discrete Fourier transform of the sectors gives the far field.
-// The model shares no code with the engine.
+// Independent model of the far field of a solid cube corner. A sector is a region of the entrance face whose light
+// meets the facets in the same order. The model traces light from sub-pixels of the face through a cube without errors
+// to find the sector of each pixel. The Jones matrix and the direction of each sector follow from Fresnel's formulas at
+// the facets with their errors. A discrete Fourier transform of the sectors gives the far field. The model shares no
+// code with the engine.
 
 #include <Eigen/Dense>
 #include <array>
@@ -16,14 +17,14 @@
 
 namespace retrace::testing {
 
-/// Data of a cube of the sector model.
+/// Properties of a cube for the sector model.
 struct SectorCube {
   double aperture_mm = 38.1;  ///< diameter of the circular face, or of the circle around the hexagonal face
   double thickness_mm = 0.1;
   double index = 1.46;
   double wavelength_nm = 532.0;
   std::array<double, 3> errors_arcsec{};
-  std::optional<std::complex<double>> metal = {};  ///< complex index of an opaque coating; none: no coating
+  std::optional<std::complex<double>> metal = {};  ///< complex index of an opaque coating; empty: no coating
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
   bool is_round = false;   ///< true for a circular face, false for a hexagonal one
@@ -57,14 +58,15 @@ class SectorModel {
   }
 
   const Vec3& to_source() const { return to_source_; }
-  /// Area of the entrance face that returns light, perpendicular to the beam.
+  /// Returns the area of the entrance face that returns light, projected perpendicular to the beam.
   double active_mm2() const {
     double sum = 0.0;
     for (const auto& [order, sector] : sectors_) sum += sector.weights.sum();
     return sum * step_mm_ * step_mm_ * to_source_.z();
   }
 
-  /// Returns Jones matrices along the axes (right, up). Their squares are cross sections in m2. Rows run along y.
+  /// Returns Jones matrices along the axes (right, up), row by row along y. Their squared moduli are cross sections in
+  /// m2.
   /// \param offsets offsets of the direction cosines from those of the source
   std::vector<Jones> far_field(const std::vector<double>& offsets) const {
     const double wavelength_mm = 1e-6 * cube_.wavelength_nm;
@@ -86,7 +88,8 @@ class SectorModel {
           sum[static_cast<std::size_t>(row * count + column)] +=
               pattern(row, column) * step_mm_ * step_mm_ * sector.phase * sector.jones;
     }
-    // The beam has the cross section A cos, and the intensity per solid angle has another factor cos.
+    // The area of the beam is A cos t, where t is the angle of incidence. The intensity per solid angle contains
+    // another factor cos t.
     const double scale = std::sqrt(4.0 * std::numbers::pi * 1e-6) / wavelength_mm * to_source_.z();
     for (Jones& jones : sum) jones *= scale;
     return sum;
@@ -107,13 +110,14 @@ class SectorModel {
     return d;
   }
   double entry_at(Eigen::Index pixel) const { return (static_cast<double>(pixel) + 0.5 - 0.5 * pixels_) * step_mm_; }
-  /// Exit point of light that enters at a pixel: the entry and the exit are symmetric about the image of the apex.
+  /// Returns one coordinate of the exit point of light that enters at a pixel. Entry point and exit point are symmetric
+  /// about the image of the apex.
   double exit_at(Eigen::Index pixel, int axis) const {
     const Vec3 d = inside_direction();
     const double centre = apex_[axis] + (cube_.thickness_mm - apex_.z()) * d[axis] / d.z();
     return 2.0 * centre - entry_at(pixel);
   }
-  /// Mean of exp(-i kappa x) over a pixel.
+  /// Returns the mean of exp(-i kappa x) over a pixel.
   Complex pixel_wave(double kappa, double x) const {
     const double half = 0.5 * kappa * step_mm_;
     return std::polar(std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0, -kappa * x);
@@ -179,7 +183,8 @@ class SectorModel {
     return order;
   }
 
-  /// Sets the inward normals with the given errors that are nearest to the normals of the perfect cube.
+  /// Sets the inward normals of the facets. Among all normals with the given errors, the nearest to the normals of the
+  /// perfect cube are used.
   void tilt_facets() {
     Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();
     for (int k = 0; k < 3; ++k) {
@@ -234,8 +239,9 @@ class SectorModel {
     sector.cosines = cosines;
     sector.jones.row(0) = right_.transpose().cast<Complex>() * field;
     sector.jones.row(1) = up_.transpose().cast<Complex>() * field;
-    // All sectors have the same phase at the apex. The wave is continued from there to the entrance face along the
-    // direction of light without errors, at whose end the pattern of the sector is placed.
+    // All sectors have the same phase at the apex. From the apex, the wave of a sector is continued to the entrance
+    // face along the direction that light has in a cube without errors. The sector is located around the point of the
+    // face that this line reaches.
     const Vec3 perfect = -inside_direction();
     const Vec3 to_face = (cube_.thickness_mm - apex_.z()) / perfect.z() * perfect;
     const double k0 = 2.0 * std::numbers::pi / (1e-6 * cube_.wavelength_nm);
