@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 5e2747720b5cc3a248931d5b5746b72ed5259d70e7d19c49ca3983aeab4f9d8a */
+/* made by tools/live_page; engine.wasm.gz 79dd17f1a27357adf5e0c025f2c1780b8cae5a8ac1ea232c26866796771e8712 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;
