@@ -93,7 +93,8 @@ std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurfac
   const Eigen::Matrix2d behind_plane =
       Eigen::Matrix2d::Identity() - lean(refracted_inside(slope, to_source, index)) * slope.transpose();
   if (!(behind_surface.determinant() > 0.0) || !(behind_plane.determinant() > 0.0)) return std::nullopt;
-  // Displacements of a point in plan, and displacements of the same point in the frame of the tangent plane.
+  // Horizontal displacement of a point of the tangent plane, and the same displacement in the coordinates of this
+  // plane.
   Eigen::Matrix<double, 3, 2> in_part;
   in_part << Eigen::Matrix2d::Identity(), slope.transpose();
   const Eigen::Matrix2d frame_from_plan = (plane.frame_from_part * in_part).topRows<2>();

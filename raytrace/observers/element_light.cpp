@@ -282,8 +282,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   if (!displacement) return nullptr;
   const double denser = displacement->determinant();
   if (denser > kMaxConcentration || denser < 1.0 / kMaxConcentration) return nullptr;
-  // The tracer works with points at which the light would enter through the tangent plane. Behind a convex surface,
-  // these points cover a smaller area than the actual entry points.
+  // The tracer uses the points where the rays cross the tangent plane, instead of the points where they enter the
+  // curved surface. For a convex surface, the crossing points cover a smaller area than the entry points.
   const Bounds model_bounds = bounds.before(*displacement);
   const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
   scene->is_lit = portion.size() >= 3;

@@ -19,7 +19,7 @@ class Scan {
   /// \throw InputError for too many combinations of discrete values
   Scan(const Study& study, const OptimiseRequest& request);
 
-  /// Returns the indices of the parameters with an interval.
+  /// Returns the indices of the parameters that vary continuously between two limits.
   const std::vector<std::size_t>& continuous() const { return continuous_; }
   /// Returns all combinations of discrete values. Continuous parameters are set to the middle of their intervals.
   const std::vector<PointValues>& combinations() const { return combinations_; }

@@ -31,7 +31,8 @@ class Evaluator {
   }
   /// Adds the designs of the store that this search has not evaluated.
   void add_stored();
-  /// Returns the most accurate result of an evaluated design: the mean of its results with the smallest target error.
+  /// Returns the most accurate result of an evaluated design. It is the mean of the results that were computed with the
+  /// smallest requested error.
   const Variant& most_accurate(const PointValues& design) const { return evaluated_[numbers_.at(key_of(design))]; }
   /// Returns the number of results. A design that was evaluated at several levels has several results.
   std::size_t results() const { return results_; }

@@ -486,7 +486,7 @@ class NoisySearch {
     std::size_t combination = 0;
   };
   std::optional<AdequateModel> last_model_;
-  std::vector<SearchPoint> proposals_;  ///< maxima of models, in the order of the search
+  std::vector<SearchPoint> proposals_;  ///< points at which a fitted model had its maximum, in the order of the search
   bool has_noise_ = false;
   std::size_t observations_ = 0;
 };

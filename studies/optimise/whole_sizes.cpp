@@ -11,7 +11,8 @@ namespace {
 
 /// Maximum deviation of the number of elements from a whole number. The layout of arrays uses the same tolerance.
 constexpr double kWhole = 1e-9;
-/// Maximum number of sizes for one length. A length with more sizes is ignored.
+/// Maximum number of sizes of elements that fill one length of the part with a whole number of elements. A length with
+/// more such sizes does not restrict the search.
 constexpr double kMaxSizes = 1000.0;
 /// Smallest step between round values, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;

@@ -41,7 +41,7 @@ struct PolarPoint {
   double angle = 0.0;
 };
 
-/// Returns the largest value of a function near a point. The pattern search halves its step again and again.
+/// Returns the largest value of a function near a point. The pattern search halves its step repeatedly.
 double refined_max(const Annulus& annulus, PolarPoint best, double value, double step_rad,
                    const DirectionValues& values) {
   double radial = step_rad;

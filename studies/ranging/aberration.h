@@ -39,8 +39,8 @@ struct AnnulusStatistics {
 };
 /// Function that returns one value for each direction, given by angles to the right and up in rad.
 using DirectionValues = std::function<std::vector<double>(const std::vector<geometry::Vec2>& angles_rad)>;
-/// Computes the mean and the extremes of a function over an annulus. A local search improves the extremes of the
-/// sampled values.
+/// Computes the mean and the extremes of a function over an annulus. The extremes are first found among samples and
+/// then refined by a local search.
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values);
 
 }  // namespace retrace::studies

@@ -20,7 +20,7 @@ struct ArrayCube {
   std::optional<std::array<double, 3>> dihedral_error_arcsec = {};
 };
 
-/// Returns the rotation from the part frame of a cube to the frame of the array. At the clocking 0, the x axis of the
+/// Returns the rotation from the part frame of a cube to the frame of the array. With zero clocking, the x axis of the
 /// cube points along a meridian, away from the +z axis of the array. If the axis of the cube is +z, both frames are
 /// parallel at the clocking 0.
 Eigen::Matrix3d array_from_cube(const ArrayCube& cube);

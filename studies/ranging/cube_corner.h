@@ -24,8 +24,8 @@ namespace retrace::studies {
 /// \param sine sine of the angle of incidence
 double range_correction_mm(double depth_mm, double index, double group_index, double sine);
 
-/// Returns L sqrt(n_g^2 - sin^2 i), an approximation of range_correction_mm() that is common in satellite ranging. The
-/// approximation is exact at normal incidence, and also without dispersion.
+/// Returns L sqrt(n_g^2 - sin^2 i), an approximation of range_correction_mm() that is common in satellite ranging. It
+/// is exact at normal incidence, and for any incidence if the body has no dispersion.
 double usual_range_correction_mm(double depth_mm, double group_index, double sine);
 
 /// Optical data of the body at one wavelength.

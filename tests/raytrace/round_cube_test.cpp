@@ -352,8 +352,8 @@ TEST(RoundCube, MountStopsSingleRays) {
   // A ray that starts between the face and the edge of the mount is stopped only on its way back.
   EXPECT_NEAR(ray_through(part, {9.0, 0.0, 1.0}, down).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {7.5, 0.0, 1.0}, down).ledger[Account::retroreflected], 1.0, 1e-12);
-  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. On its way back, it crosses the plane of the edge
-  // outside the circle.
+  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. On its way back, it crosses the plane that
+  // contains the edge of the mount, at a point outside the circular edge.
   EXPECT_NEAR(ray_through(part, {14.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {15.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::retroreflected], 1.0, 1e-12);
   EXPECT_EQ(ray_through(part, {30.0, 0.0, 50.0}, down).rays_missed, 1U);

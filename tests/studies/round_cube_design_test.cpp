@@ -49,7 +49,7 @@ TEST(RoundCubeDesign, LengthIsThatOfTheKeysOrTheMinimum) {
   EXPECT_GT(length_of(design()), min_mm);
   EXPECT_NEAR(length_of(design("length_mm = 19")), 19.0, 1e-12);
   EXPECT_NEAR(length_of(design("edge_length_mm = 33")), 33.0 / std::numbers::sqrt3, 1e-12);
-  // Angle errors raise the facets. The face must be above the facets.
+  // Angle errors move the highest points of the facets upwards. The entrance face must be above these points.
   const design::Design raised = read(design("", "[surface]\ndihedral_error_arcmin = [20, -10, 5]\n"));
   EXPECT_GT(raised.part().thickness_mm, 0.01);
   EXPECT_NO_THROW(geometry::build_part(raised.part()));

@@ -96,7 +96,8 @@ class Noisy : public studies::SearchedFunction {
   }
 
  private:
-  /// Returns the error of a trial in standard errors. The common fraction is a smooth function of the position.
+  /// Returns the random error of a trial, in units of its standard error. A fraction of this error is common to all
+  /// trials and is a smooth function of the position.
   double error_of(const SearchTrial& trial) const {
     const std::uint64_t stream = seed_ * 1000 + trial.level.replicate * 10 + (trial.level.scale > 3.0 ? 1U : 0U);
     double smooth = normal(stream, 1);
