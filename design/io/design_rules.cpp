@@ -373,12 +373,13 @@ void check_face_of_round_cube(const Document& document, const PartSpec& part) {
         "is below this centre");
 }
 
-/// Checks that a hollow cube corner, which has no body, gives no keys of a body.
+/// Checks that a hollow cube corner, which has no body and no face, gives no keys of a body or a face.
 void check_hollow(const Document& document) {
   constexpr std::string_view key = "element.hollow";
   if (!document.has(key) || !document.flag(key)) return;
   for (const std::string_view of_body :
-       {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c", "body.absorption_per_mm"})
+       {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c", "body.absorption_per_mm",
+        "coating.entrance", "entrance.film_coverage"})
     if (document.has(of_body)) document.fail(of_body, "not allowed together with element.hollow = true");
   if (document.text("idealisation.facets") == "mirror" || document.text("body.facet_coating") != "none") return;
   for (std::size_t i = 0; i < document.count(kFacetLayers); ++i)
@@ -464,9 +465,10 @@ constexpr schema::Words kFaceKeys = {
     "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
     "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
     "outline.polygon_mm",     "outline.dxf"};
-constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",      "body.catalogue",
-                                       "body.refractive_index", "body.temperature_c", "body.absorption_per_mm",
-                                       "idealisation.facets",   "body.facet_coating", "coating.facets"};
+constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",          "body.catalogue",
+                                       "body.refractive_index", "body.temperature_c",     "body.absorption_per_mm",
+                                       "coating.entrance",      "entrance.film_coverage", "idealisation.facets",
+                                       "body.facet_coating",    "coating.facets"};
 constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
@@ -589,8 +591,8 @@ constexpr schema::Rule kRules[] = {
         check_by<of_part<check_face_of_round_cube>>},
     schema::Check{
         kHollowKeys,
-        "A hollow cube corner has mirrors on its facets. The keys of the material, its index and its absorption "
-        "are not allowed.",
+        "A hollow cube corner has mirrors on its facets. The keys of the material, its index and its absorption, and "
+        "those of coatings and contamination of the entrance face, are not allowed.",
         check_by<check_hollow>},
     schema::Check{kHeightKeys,
                   "If the rms height of the roughness is above 0, its correlation length is required. If the rms "

@@ -75,6 +75,21 @@ LitCubes::LitCubes(const CubeSet& set, const Vec3& to_source, std::size_t wavele
     fields_[k].field = set.variants[fields_[k].variant].field(fields_[k].to_source, wavelength, cancel);
   });
   std::erase_if(lit_, [&](const Lit& lit) { return fields_[lit.field].field.empty(); });
+  find_equal_cubes();
+}
+
+void LitCubes::find_equal_cubes() {
+  std::map<std::array<std::int64_t, 10>, std::size_t> known;
+  for (std::size_t k = 0; k < lit_.size(); ++k) {
+    std::array<std::int64_t, 10> key{static_cast<std::int64_t>(lit_[k].field)};
+    for (Eigen::Index entry = 0; entry < 9; ++entry)
+      key[static_cast<std::size_t>(entry) + 1] = std::llround(lit_[k].traced_from_array.data()[entry] / kDirectionStep);
+    const auto [it, is_new] = known.try_emplace(key, equal_cubes_.size());
+    if (is_new)
+      equal_cubes_.push_back({k});
+    else
+      equal_cubes_[it->second].count += 1.0;
+  }
 }
 
 double LitCubes::detail_rad() const {
@@ -135,10 +150,10 @@ std::vector<Stokes> LitCubes::stokes(std::span<const Vec2> angles_rad, const Sto
     const std::size_t count = std::min(kDirectionsPerTask, angles_rad.size() - first);
     std::vector<Vec3> directions;
     for (const Vec2& angles : angles_rad.subspan(first, count)) directions.push_back(frame_.direction(angles));
-    for (const Lit& lit : lit_) {
+    for (const EqualCubes& cubes : equal_cubes_) {
       if (is_cancelled(cancel)) return;
-      const std::vector<DirectionField> fields = fields_of(lit, directions);
-      for (std::size_t k = 0; k < count; ++k) sums[first + k] += returned_stokes(fields[k], sent);
+      const std::vector<DirectionField> fields = fields_of(lit_[cubes.lit], directions);
+      for (std::size_t k = 0; k < count; ++k) sums[first + k] += cubes.count * returned_stokes(fields[k], sent);
     }
   });
   return sums;

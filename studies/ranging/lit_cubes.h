@@ -67,15 +67,22 @@ class LitCubes {
     Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  ///< maps the axes of the array to the axes of the traced light
     double range_mm = 0.0;
   };
+  /// Cubes with the same field and the same orientation.
+  struct EqualCubes {
+    std::size_t lit = 0;  ///< index of the first of them in lit_
+    double count = 1.0;
+  };
   struct Traced {
     std::size_t variant = 0;
     geometry::Vec3 to_source;
     CubeField field;
   };
+  void find_equal_cubes();
   std::vector<DirectionField> fields_of(const Lit& lit, std::span<const geometry::Vec3> directions) const;
 
   raytrace::ReturnFrame frame_;
   std::vector<Lit> lit_;
+  std::vector<EqualCubes> equal_cubes_;
   std::vector<Traced> fields_;
 };
 

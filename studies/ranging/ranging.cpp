@@ -24,7 +24,6 @@ namespace {
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
 constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;
-constexpr double kArcsecPerArcmin = 60.0;
 // Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
 constexpr double kMapMargin = 4.0;
 constexpr double kAnnulusMargin = 1.25;
@@ -158,9 +157,11 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
 
 /// Returns the design after replacing the errors of its dihedral angles.
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
+  // An empty value removes a key. The design may give its errors in either unit.
   const std::vector<std::string> overrides = {
-      fmt::format("surface.dihedral_error_arcmin=[{}, {}, {}]", shortest(errors_arcsec[0] / kArcsecPerArcmin),
-                  shortest(errors_arcsec[1] / kArcsecPerArcmin), shortest(errors_arcsec[2] / kArcsecPerArcmin))};
+      "surface.dihedral_error_arcmin=",
+      fmt::format("surface.dihedral_error_arcsec=[{}, {}, {}]", shortest(errors_arcsec[0]), shortest(errors_arcsec[1]),
+                  shortest(errors_arcsec[2]))};
   return design::with(design, overrides);
 }
 
@@ -252,6 +253,12 @@ struct RangingStudy::Prepared {
           studies::usual_range_correction_mm(corner.depth_mm(), point.index.group_index, sine);
     }
     if (lit.count() == 0) {
+      if (settings.is_array())
+        result.warnings.push_back(
+            {"no_lit_cube",
+             fmt::format("no cube faces the source at the incidence {} and the azimuth {} degrees: check "
+                         "the axes of the cubes, which point out of their faces",
+                         shortest(incidence_deg), shortest(azimuth_deg))});
       point.centre = by_polarisation({}, settings.sent);
       if (settings.annulus) point.annulus = dark_annulus();
       return point;
@@ -323,6 +330,7 @@ RangingResult RangingStudy::run(Progress* progress, const Cancellation* cancel) 
         result.points.push_back(std::move(point));
         if (progress != nullptr) progress->at(static_cast<double>(result.points.size()) / static_cast<double>(total));
       }
+  if (result.points.empty()) result.map = {};  // the map of an interrupted point is incomplete
   result.complete = result.points.size() == total;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
