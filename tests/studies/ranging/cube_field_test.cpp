@@ -153,6 +153,39 @@ TEST(CubeField, PowerOfMirrorsBehindAFaceIsAGeometricSeries) {
     }
 }
 
+/// Returns the cross section towards the source of an array of cubes, in m2.
+double centre_of(const std::string& surface, const std::vector<studies::ArrayCube>& cubes) {
+  const std::string text =
+      "schema = \"retrace.design/1\"\n[element]\nkind = \"round_icc\"\ndiameter_mm = 20\n[body]\nrefractive_index = "
+      "1.46\n[light]\nwavelength_nm = 532\n[surface]\n" +
+      surface;
+  RangingRequest request;
+  request.cubes = "cubes.toml";
+  request.map_points = 3;
+  const studies::RangingResult result =
+      studies::RangingStudy(design::parse_design(text, "cube.toml"), request, cubes).run(nullptr, nullptr);
+  return result.points.at(0).centre.total;
+}
+
+/// The errors of a cube replace those of the design, whatever the unit of the design's errors. Equal cubes with
+/// parallel axes return the sum of their light.
+TEST(CubeField, ErrorsOfACubeReplaceThoseOfTheDesign) {
+  studies::ArrayCube own;
+  own.dihedral_error_arcsec = {1.0, 0.5, -1.0};
+  const double expected = centre_of("dihedral_error_arcsec = [1, 0.5, -1]\n", {studies::ArrayCube{}});
+  for (const std::string surface :
+       {"dihedral_error_arcsec = 2\n", "dihedral_error_arcmin = 0.1\n", "walls = \"absorbing\"\n"})
+    EXPECT_NEAR(centre_of(surface, {own}),
+                surface[0] == 'w'
+                    ? centre_of("walls = \"absorbing\"\ndihedral_error_arcsec = [1, 0.5, -1]\n", {studies::ArrayCube{}})
+                    : expected,
+                1e-9 * expected)
+        << surface;
+  std::vector<studies::ArrayCube> row(7, own);
+  for (std::size_t k = 0; k < row.size(); ++k) row[k].position_mm = {40.0 * static_cast<double>(k), 0.0, 0.0};
+  EXPECT_NEAR(centre_of("dihedral_error_arcsec = 2\n", row), 7.0 * expected, 1e-6 * expected);
+}
+
 /// Sectors do not overlap. The integral of the Stokes parameters over the far field is therefore the sum over all
 /// beams, which the tracer computes without fields.
 TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
