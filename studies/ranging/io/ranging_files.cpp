@@ -52,6 +52,7 @@ Json shots_json(const std::vector<Shot>& shots) {
 }
 
 Json ranges_json(const RangingPoint& p) {
+  if (!(p.ranges.cross_section_m2 > 0.0)) return Json::object({{"lit_cubes", p.lit_cubes}});
   return {{"lit_cubes", p.lit_cubes},
           {"traced_cubes", p.traced_cubes},
           {"cross_section_m2", p.ranges.cross_section_m2},
@@ -70,7 +71,7 @@ Json point_json(const RangingPoint& p, bool is_array) {
   if (p.annulus) json["annulus"] = annulus_json(*p.annulus);
   if (p.range_correction_mm) json["range_correction_mm"] = *p.range_correction_mm;
   if (p.usual_range_correction_mm) json["usual_range_correction_mm"] = *p.usual_range_correction_mm;
-  if (is_array && p.ranges.cross_section_m2 > 0.0) json["ranges"] = ranges_json(p);
+  if (is_array) json["ranges"] = ranges_json(p);
   if (!p.shots.empty()) json["shots"] = shots_json(p.shots);
   return json;
 }
