@@ -15,6 +15,7 @@
 #include "design/io/optics_checks.h"
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
+#include "design/io/round_cube_checks.h"
 #include "design/io/zone_reader.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/element_cells.h"
@@ -335,60 +336,6 @@ void check_thickness(const Document& document, const PartSpec& part) {
                               shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
 }
 
-/// Checks that the facets of a round cube corner reach the rim of its face, but do not cut the face.
-void check_length_of_round_cube(const Document& document, const PartSpec& part) {
-  constexpr double kRoundingMm = 1e-9;
-  if (!std::holds_alternative<RoundCube>(part.element)) return;
-  const double depth_mm = geometry::element_depth_mm(part.element, part.angle_errors);
-  const double min_mm = depth_mm + min_thickness_mm(part);
-  if (depth_mm + part.thickness_mm >= min_mm - kRoundingMm) return;
-  const bool is_edge = document.has("element.edge_length_mm");
-  const double factor = is_edge ? std::numbers::sqrt3 : 1.0;
-  const std::string_view key = is_edge ? "element.edge_length_mm" : "element.length_mm";
-  document.fail(key, fmt::format("must be >= {} so that the facets meet the rim of the face, got {}",
-                                 shortest(factor * min_mm), shortest(document.number(key))));
-}
-
-/// Checks the mount, the chamfer and the outline of a round cube corner.
-void check_face_of_round_cube(const Document& document, const PartSpec& part) {
-  const auto* const cube = std::get_if<RoundCube>(&part.element);
-  if (cube == nullptr) return;
-  const NumberRange chamfers{.low = 0.0, .high = 0.5 * cube->diameter_mm, .high_included = false};
-  if (!chamfers.contains(cube->chamfer_mm)) document.fail("element.chamfer_mm", of_range(chamfers, cube->chamfer_mm));
-  for (const std::string_view key : {"surface.rim_radius_um", "surface.rim_chamfer_um"})
-    if (document.number(key) > 0.0)
-      document.fail(key, "not allowed for element.kind = \"round_icc\", which has element.chamfer_mm");
-  if (document.has("shell") && (cube->chamfer_mm > 0.0 || cube->mount_diameter_mm > 0.0))
-    document.fail("shell", "not allowed together with a mount or a chamfer in [element]");
-  if (document.has("part.facets")) document.fail("part.facets", "not allowed for element.kind = \"round_icc\"");
-  if (!cube->outline) return;
-  if (cube->chamfer_mm > 0.0)
-    document.fail("element.chamfer_mm", "must be 0 together with [outline], got " + shortest(cube->chamfer_mm));
-  if (document.has("outline.margin_mm") && document.number("outline.margin_mm") > 0.0)
-    document.fail("outline.margin_mm", "must be 0 for element.kind = \"round_icc\"");
-  if (!cube->outline->is_convex() || !geometry::contains(cube->outline->hull, cube->outline->box_mm.centre(), 0.0))
-    document.fail(
-        document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
-        "must be a convex outline without holes that contains the centre of its bounding box, because the apex "
-        "is below this centre");
-}
-
-/// Checks that a hollow cube corner, which has no body and no face, gives no keys of a body or a face.
-void check_hollow(const Document& document) {
-  constexpr std::string_view key = "element.hollow";
-  if (!document.has(key) || !document.flag(key)) return;
-  for (const std::string_view of_body :
-       {"body.material", "body.catalogue", "body.refractive_index", "body.temperature_c", "body.absorption_per_mm",
-        "coating.entrance", "entrance.film_coverage"})
-    if (document.has(of_body)) document.fail(of_body, "not allowed together with element.hollow = true");
-  if (document.text("idealisation.facets") == "mirror" || document.text("body.facet_coating") != "none") return;
-  for (std::size_t i = 0; i < document.count(kFacetLayers); ++i)
-    if (!document.has(schema::path_of_entry(kFacetLayers, i) + ".thickness_nm")) return;
-  document.fail(key,
-                "requires mirrors: idealisation.facets = \"mirror\", body.facet_coating = \"aluminium\" or an opaque "
-                "layer in coating.facets");
-}
-
 void check_bowl(const Document& document) {
   if (document.has("part.mesh") || document.has("part.plate_mm") || has_elements(document)) return;
   const double most_deg = read_balls(document).max_mirror_half_angle_deg();
@@ -460,15 +407,6 @@ constexpr schema::Words kFacetsKeys = {"part.facets",        "array.extent", "su
 constexpr schema::Words kSubstrateKeys = {"substrate.kind", "substrate.element_axes", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
-constexpr schema::Words kLengthKeys = {"element.length_mm", "element.edge_length_mm"};
-constexpr schema::Words kFaceKeys = {
-    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
-    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
-    "outline.polygon_mm",     "outline.dxf"};
-constexpr schema::Words kHollowKeys = {"element.hollow",        "body.material",          "body.catalogue",
-                                       "body.refractive_index", "body.temperature_c",     "body.absorption_per_mm",
-                                       "coating.entrance",      "entrance.film_coverage", "idealisation.facets",
-                                       "body.facet_coating",    "coating.facets"};
 constexpr schema::Words kFormKeys = {kFormTerms};
 constexpr schema::Words kBowlKeys = {"element.mirror_half_angle_deg", "array.gap_mm"};
 constexpr schema::Words kHeightKeys = {kRoughness, kRoughnessLength, kWaviness, kWavinessLength};
@@ -579,12 +517,12 @@ constexpr schema::Rule kRules[] = {
                   "balls meet.",
                   check_by<check_bowl>},
     schema::Check{
-        kLengthKeys,
+        kRoundLengthKeys,
         "The length of a round cube corner must be so large that its facets, including angle errors and a cant, "
         "do not cut its face.",
         check_by<of_part<check_length_of_round_cube>>},
     schema::Check{
-        kFaceKeys,
+        kRoundFaceKeys,
         "The chamfer of a round cube corner is narrower than the radius of its face. A mount and a chamfer are "
         "not allowed together with `[[shell]]`. With an `[outline]`, a chamfer and a margin are not allowed. "
         "The outline must be convex and contain the centre of its bounding box, which is above the apex.",
