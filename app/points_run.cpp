@@ -43,7 +43,6 @@ class PointsBar : public studies::SweepObserver {
   }
 
  private:
-  static constexpr std::chrono::seconds kTimeBetweenLines{5};
   static constexpr int kPauseFactor = 20;
 
   ProgressBar bar_;

@@ -11,8 +11,6 @@
 namespace retrace::app {
 namespace {
 
-constexpr std::chrono::seconds kTimeBetweenLines{5};
-
 bool has_tracing(const studies::Study& study, std::string_view kind) {
   return std::ranges::any_of(study.quantities,
                              [&](const auto& quantity) { return quantity->tracing().starts_with(kind); });

@@ -13,6 +13,9 @@
 
 namespace retrace::app {
 
+/// Minimum time between two lines about the best result so far, if the output is not a terminal.
+inline constexpr std::chrono::seconds kTimeBetweenLines{5};
+
 /// Returns advice for a shorter study, such as "give a smaller analysis.samples (now 1000000000)".
 /// \param fewer_points additional advice on how to reduce the number of points, such as "give fewer values"; may be
 ///        empty

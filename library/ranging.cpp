@@ -27,7 +27,7 @@ CrossSection from_study(const studies::RangingPoint& point) {
     converted.max_m2 = point.annulus->total.max;
   }
   converted.range_correction_mm = point.range_correction_mm;
-  if (point.ranges.cross_section_m2 > 0.0) converted.centroid_mm = point.ranges.centroid_mm;
+  if (point.ranges.has_light()) converted.centroid_mm = point.ranges.centroid_mm;
   return converted;
 }
 

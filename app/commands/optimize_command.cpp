@@ -93,9 +93,23 @@ void check_making_of(const OptimizeOptions& options, JobRequest request, const s
   studies::check_element(studies::make_candidate(study, example_values(study)).design(), request);
 }
 
+/// Returns the warnings about the study, the search and the job.
+Warnings warnings_of(const studies::Study& study, const studies::Optimum& optimum,
+                     const std::optional<studies::GeneratedJob>& made, compute::MpiSession* session) {
+  Warnings warnings = remarks_of(session);
+  append(warnings, studies::keys_without_effect(study));
+  if (optimum.budget_failures > 0)
+    warnings.push_back(
+        {"designs_out_of_budget",
+         fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
+                     optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
+  if (made) append(warnings, made->warnings);
+  return warnings;
+}
+
 /// Searches for the best design and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
-ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
+ExitCode search_and_write(const OptimizeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = study_of(options, common);
   const studies::OptimiseRequest request = studies::read_optimise(study);
@@ -139,15 +153,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
   }
   if (optimum.best && !options.job.empty()) made = job_of(making, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Warnings warnings = remarks_of(session);
-  const Warnings without_effect = studies::keys_without_effect(study);
-  append(warnings, without_effect);
-  if (optimum.budget_failures > 0)
-    warnings.push_back(
-        {"designs_out_of_budget",
-         fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
-                     optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
-  if (made) append(warnings, made->warnings);
+  const Warnings warnings = warnings_of(study, optimum, made, session);
   const ExitCode code =
       files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                   without_middle(studies::optimum_text(study, request, optimum), common, "optimum.json"), warnings,
@@ -161,7 +167,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
 
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, slots(common), [&](compute::MpiSession* session) { return look(options, common, session); },
+      common, slots(common), [&](compute::MpiSession* session) { return search_and_write(options, common, session); },
       [&] {
         const studies::Study study = study_of(options, common);
         return studies::compute_task(studies::optimise_scan(study, studies::read_optimise(study)));

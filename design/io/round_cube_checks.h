@@ -23,6 +23,7 @@ inline constexpr std::string_view kHollowKeys[] = {
     "body.temperature_c",  "body.absorption_per_mm", "coating.entrance", "entrance.film_coverage",
     "idealisation.facets", "body.facet_coating",     "coating.facets"};
 inline constexpr std::size_t kRefusedKeysOfHollow = 7;
+static_assert(kHollowKeys[kRefusedKeysOfHollow] == "entrance.film_coverage");
 
 /// Checks that the facets of a round cube corner reach the rim of its face, but do not cut the face.
 /// \throw InputError that names file, line and key

@@ -14,8 +14,6 @@ namespace {
 using Eigen::Matrix3d;
 using geometry::Vec3;
 
-constexpr double kRadPerArcsec = std::numbers::pi / (180.0 * 3600.0);
-
 constexpr SetupQuantity kOfC[] = {{"c_x_um", "centre of C along X", SetupPart::c_point, 0},
                                   {"c_y_um", "centre of C along Y", SetupPart::c_point, 1},
                                   {"c_lean_x_arcsec", "lean of C towards X", SetupPart::c_direction, 0},

@@ -142,40 +142,45 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   send(step, std::move(beam), plane, against, mirrored(direction, against), reflected, true);
 }
 
+/// Plane of the entrance face or of a side that a beam may meet.
+struct Exit {
+  Plane plane;
+  Distance distance;
+  FacetRole role;
+};
+using Exits = boost::container::small_vector<Exit, 8>;
+
+/// Removes the planes that a fragment does not meet, because the whole fragment reaches another plane earlier. This is
+/// frequent for a cylinder, which consists of many planes.
+void discard_unreached(const FlatPolygon& polygon, double merge_mm, Exits& exits) {
+  if (exits.size() <= kManyExits) return;
+  const auto range_of = [&](const Exit& exit) {
+    std::pair range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+    for (const Vec2& p : polygon) {
+      range.first = std::min(range.first, exit.distance.at(p));
+      range.second = std::max(range.second, exit.distance.at(p));
+    }
+    return range;
+  };
+  double latest = std::numeric_limits<double>::infinity();
+  for (const Exit& exit : exits) latest = std::min(latest, range_of(exit).second);
+  const auto is_beyond = [&](const Exit& exit) { return range_of(exit).first > latest + merge_mm; };
+  exits.erase(std::remove_if(exits.begin(), exits.end(), is_beyond), exits.end());
+}
+
 /// Splits a fragment between the entrance face and the sides. Each face receives the portion of the fragment that
 /// reaches this face before the other faces.
 void leave_hull(const BeamStep& step, const Fragment& fragment) {
-  struct Exit {
-    Plane plane;
-    Distance distance;
-    FacetRole role;
-  };
   const LightSetup& setup = step.scene.setup;
   const double merge_mm = step.scene.merge_mm;
-  boost::container::small_vector<Exit, 8> exits;
+  Exits exits;
   const auto offer = [&](const Plane& plane, FacetRole role) {
     if (plane.normal.dot(step.beam.direction) > kMinIncidenceCosine)
       exits.push_back({plane, Distance(step.frame, plane), role});
   };
   offer({Vec3::UnitZ(), setup.thickness_mm}, FacetRole::entrance);
   for (const auto& side : setup.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
-
-  // A fragment does not meet a plane if the whole fragment reaches another plane earlier. This is frequent for a
-  // cylinder, which consists of many planes.
-  double latest = std::numeric_limits<double>::infinity();
-  const auto range_of = [&](const Exit& exit) {
-    std::pair range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
-    for (const Vec2& p : fragment.polygon) {
-      range.first = std::min(range.first, exit.distance.at(p));
-      range.second = std::max(range.second, exit.distance.at(p));
-    }
-    return range;
-  };
-  if (exits.size() > kManyExits) {
-    for (const Exit& exit : exits) latest = std::min(latest, range_of(exit).second);
-    const auto is_beyond = [&](const Exit& exit) { return range_of(exit).first > latest + merge_mm; };
-    exits.erase(std::remove_if(exits.begin(), exits.end(), is_beyond), exits.end());
-  }
+  discard_unreached(fragment.polygon, merge_mm, exits);
 
   const double whole = area(fragment.polygon);
   double used = 0.0;

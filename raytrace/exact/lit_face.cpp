@@ -5,13 +5,9 @@
 namespace retrace::raytrace {
 
 double horizontal_area(const Corners& corners) {
-  double twice = 0.0;
-  for (std::size_t k = 2; k < corners.size(); ++k) {
-    const Vec2 p = (corners[k - 1] - corners[0]).head<2>();
-    const Vec2 q = (corners[k] - corners[0]).head<2>();
-    twice += p.x() * q.y() - p.y() * q.x();
-  }
-  return 0.5 * std::abs(twice);
+  FlatPolygon plan;
+  for (const Vec3& p : corners) plan.push_back(p.head<2>());
+  return std::abs(area(plan));
 }
 
 LitFace::LitFace(const BeamScene& scene) {

@@ -24,10 +24,10 @@ class FaceStops {
   bool is_clear(const Vec2& at_mm) const { return !clear_face_ || clear_face_->contains(at_mm); }
   /// Returns true if a line crosses the plane of the mount's edge inside the edge.
   bool passes_mount(const Vec3& position, const Vec3& direction) const;
-  /// Returns true if light passes the stops in both directions. It must reach the point `on_face` from the source, and
-  /// must then leave this point in the direction `leaving`.
-  bool passes_both_ways(const Vec3& on_face, const Vec3& to_source, const Vec3& leaving) const {
-    return is_clear(on_face.head<2>()) && passes_mount(on_face, to_source) && passes_mount(on_face, leaving);
+  /// Returns true if light on the line through a point of the plane entrance face reaches this point: past the mount,
+  /// and not on the chamfer.
+  bool reaches(const Vec3& on_face, const Vec3& direction) const {
+    return is_clear(on_face.head<2>()) && passes_mount(on_face, direction);
   }
   /// Returns true if a position is on the source side of the plane of the mount's edge.
   bool is_in_front_of_mount(const Vec3& position) const { return mount_ && position.z() > edge_height_mm_; }

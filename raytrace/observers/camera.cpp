@@ -315,9 +315,7 @@ void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, s
     return;
   }
   const FaceStops& stops = setups[wavelength].stops;
-  if (contact.kind == Contact::Kind::face &&
-      (!stops.is_clear(contact.local.head<2>()) || !stops.passes_mount(contact.local, direction)))
-    return;
+  if (contact.kind == Contact::Kind::face && !stops.reaches(contact.local, direction)) return;
   if (path.shows_part()) {
     const bool is_side = contact.kind == Contact::Kind::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());

@@ -101,7 +101,9 @@ class Recorder : public ExitObserver {
     entry_ = pixel_at(position_mm);
     if (light_.optics.entrance.scatters()) return;  // in this case the walker reports the reflected light
     const Vec3 on_face(position_mm.x(), position_mm.y(), light_.thickness_mm);
-    if (!light_.stops.passes_both_ways(on_face, light_.to_source, light_.entry.reflected_direction)) return;
+    if (!light_.stops.reaches(on_face, light_.to_source) ||
+        !light_.stops.passes_mount(on_face, light_.entry.reflected_direction))
+      return;
     add(position_mm, light_.entry.reflected_direction, light_.entry.reflected.i);
   }
   void on_exit(const ExitEvent& departure) override {

@@ -128,6 +128,37 @@ Polygon shadow_of(const std::vector<Vec3>& corners_mm, const TangentPlane& plane
   return geometry::convex_hull(std::move(points));
 }
 
+/// Returns the excerpt around an element in the frame of its tangent plane. Its entrance face consists of the given
+/// polygons.
+geometry::ElementExcerpt excerpt_with_face(const geometry::Part& part, const PartElement& own,
+                                           const TangentPlane& plane, double thickness_mm, const FlatPolygons& pieces) {
+  Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
+  frame_from_part.linear() = plane.frame_from_part;
+  frame_from_part.translation() = Vec3(0.0, 0.0, thickness_mm) - plane.frame_from_part * plane.point_mm;
+  const double height_mm = plane.point_mm.z() - own.lower_mm.z();
+  geometry::ElementExcerpt excerpt = geometry::excerpt_around(
+      part, own, frame_from_part, thickness_mm, kSurroundings * part.size_mm + kReflectedReach * height_mm);
+  geometry::Part& made = excerpt.part;
+  made.entrance_area_mm2 = 0.0;
+  Vec2 largest_mm = Vec2::Zero();
+  geometry::Rectangle box = geometry::bounding_box(made.outline);
+  for (const FlatPolygon& piece : pieces) {
+    made.entrance_pieces.push_back(as_polygon(piece));
+    made.entrance_area_mm2 += raytrace::area(piece);
+    largest_mm = largest_mm.cwiseMax(geometry::bounding_box(made.entrance_pieces.back()).size());
+    for (const Vec2& p : piece) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+  }
+  made.outline = geometry::to_polygon(box);
+  // The exact engine divides the entrance face into fragments of the size of an element. This element is so large that
+  // every polygon of the entrance face remains a single fragment.
+  made.spec = {};
+  made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
+  return excerpt;
+}
+
 }  // namespace
 
 struct ElementLight::Bounds {
@@ -194,7 +225,7 @@ std::optional<TangentPlane> ElementLight::plane_of(std::size_t element, const Ve
 }
 
 ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Vec3& to_source,
-                                             const std::vector<std::optional<Vec2>>& tangent_points) const {
+                                             const std::vector<Vec2>& tangent_points) const {
   Bounds bounds;
   bounds.merge_mm = kMerge * part_.size_mm;
   bounds.diameter_mm = diameter_mm_;
@@ -213,9 +244,8 @@ ElementLight::Bounds ElementLight::bounds_of(const TangentPlane& plane, const Ve
         half_plane_on(plane, {in_plane.x(), in_plane.y(), -lean}, outward.dot(a) - lean * beam_plane_.height_mm));
   }
   const Vec2 own = plane.point_mm.head<2>();
-  for (const std::optional<Vec2>& other : tangent_points) {
-    if (!other) continue;
-    const Vec2 away = *other - own;
+  for (const Vec2& other : tangent_points) {
+    const Vec2 away = other - own;
     if (away.norm() > bounds.merge_mm)
       bounds.of_neighbours.push_back(
           half_plane_on(plane, {away.x(), away.y(), 0.0}, away.dot(own) + 0.5 * away.squaredNorm()));
@@ -235,9 +265,9 @@ std::vector<ElementPortion> ElementLight::portions(const Vec3& to_source, double
   for (std::size_t k = 0; k < elements_.size(); ++k) {
     const std::optional<TangentPlane>& plane = planes[k];
     if (!plane) continue;
-    std::vector<std::optional<Vec2>> near;
+    std::vector<Vec2> near;
     for (const std::uint32_t other : neighbours_[k])
-      near.push_back(planes[other] ? std::optional(Vec2(planes[other]->point_mm.head<2>())) : std::nullopt);
+      if (planes[other]) near.push_back(planes[other]->point_mm.head<2>());
     const Bounds bounds = bounds_of(*plane, to_source, near);
     const FlatPolygon cell = bounds.cell();
     const FlatPolygon lit = bounds.lit(cell);
@@ -263,11 +293,10 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   const double thickness_mm = -highest_mm;
   if (!(thickness_mm > kMinThickness * part_.size_mm)) return nullptr;
 
-  std::vector<std::optional<Vec2>> near;
-  for (const std::uint32_t other : neighbours_[element]) {
-    const std::optional<TangentPlane> of_other = plane_of(other, to_source, index);
-    near.push_back(of_other ? std::optional(Vec2(of_other->point_mm.head<2>())) : std::nullopt);
-  }
+  std::vector<Vec2> near;
+  for (const std::uint32_t other : neighbours_[element])
+    if (const std::optional<TangentPlane> of_other = plane_of(other, to_source, index))
+      near.push_back(of_other->point_mm.head<2>());
   const double empty_mm2 = kEmptyArea * part_.size_mm * part_.size_mm;
   const Bounds bounds = bounds_of(*plane, to_source, near);
   const FlatPolygon lit_cell = bounds.lit(bounds.cell());
@@ -305,30 +334,7 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
     if (lit_entries.size() >= 3) subtract(lit_entries, portion, empty_mm2, bounds.merge_mm, pieces);
   }
 
-  Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
-  frame_from_part.linear() = plane->frame_from_part;
-  frame_from_part.translation() = Vec3(0.0, 0.0, thickness_mm) - plane->frame_from_part * plane->point_mm;
-  scene->excerpt = geometry::excerpt_around(part_, own, frame_from_part, thickness_mm,
-                                            kSurroundings * part_.size_mm + kReflectedReach * height_mm);
-  geometry::Part& made = scene->excerpt.part;
-  double face_mm2 = 0.0;
-  Vec2 largest_mm = Vec2::Zero();
-  geometry::Rectangle box = geometry::bounding_box(made.outline);
-  for (const FlatPolygon& piece : pieces) {
-    made.entrance_pieces.push_back(as_polygon(piece));
-    face_mm2 += raytrace::area(piece);
-    largest_mm = largest_mm.cwiseMax(geometry::bounding_box(made.entrance_pieces.back()).size());
-    for (const Vec2& p : piece) {
-      box.lower = box.lower.cwiseMin(p);
-      box.upper = box.upper.cwiseMax(p);
-    }
-  }
-  made.outline = geometry::to_polygon(box);
-  // The exact engine divides the entrance face into fragments of the size of an element. This element is so large that
-  // every polygon of the entrance face remains a single fragment.
-  made.spec = {};
-  made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
-  made.entrance_area_mm2 = face_mm2;
+  scene->excerpt = excerpt_with_face(part_, own, *plane, thickness_mm, pieces);
   scene->portion_mm = as_polygon(portion);
   scene->fraction = raytrace::area(lit_cell) * fraction_per_mm2(*plane, to_source);
   scene->to_source = scene->direction(to_source);
@@ -338,7 +344,7 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   if (!sag) return nullptr;
   scene->sag = *sag;
   scene->squared_slope = squared_slope(*sag, inside.head<2>() / inside.z());
-  scene->power_factor = denser * face_mm2 * fraction_per_mm2(*plane, to_source);
+  scene->power_factor = denser * scene->excerpt.part.entrance_area_mm2 * fraction_per_mm2(*plane, to_source);
   return scene;
 }
 

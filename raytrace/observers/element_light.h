@@ -88,10 +88,8 @@ class ElementLight {
   /// neighbouring elements.
   struct Bounds;
   std::optional<TangentPlane> plane_of(std::size_t element, const Vec3& to_source, double index) const;
-  /// \param tangent_points tangent points, in plan, of the neighbouring elements; nullopt for elements without a
-  ///     tangent plane
-  Bounds bounds_of(const TangentPlane& plane, const Vec3& to_source,
-                   const std::vector<std::optional<Vec2>>& tangent_points) const;
+  /// \param tangent_points tangent points, in plan, of the neighbouring elements that have a tangent plane
+  Bounds bounds_of(const TangentPlane& plane, const Vec3& to_source, const std::vector<Vec2>& tangent_points) const;
   double fraction_per_mm2(const TangentPlane& plane, const Vec3& to_source) const;
 
   const geometry::Part& part_;

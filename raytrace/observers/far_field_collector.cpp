@@ -41,14 +41,6 @@ std::int64_t step_of(double value, double step) {
   return std::llround(value / step);
 }
 
-/// Returns the coherency matrix of the incident light along the axes of the source. The second axis is opposite to the
-/// p axis of the incident light.
-Eigen::Matrix2cd incident_coherency(const Stokes& s) {
-  Eigen::Matrix2cd c;
-  c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
-  return 0.5 * c;
-}
-
 /// Rounded data with which the fields of two cells are compared.
 using Signature = std::vector<std::int64_t>;
 
@@ -112,7 +104,7 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
       directions_(kOneDirection_rad) {
   field_.replicates_ = policy.replicates;
   field_.wavelength_mm_ = 1e-6 * policy.wavelength_nm;
-  field_.coherency_ = incident_coherency(illumination.stokes);
+  field_.coherency_ = coherency_of_source(illumination.stokes);
   field_.cancel_ = policy.cancel;
 }
 

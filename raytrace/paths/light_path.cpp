@@ -34,7 +34,7 @@ class Follower {
       if (!enter_curved_face()) return pass_beside();
     } else {
       path_.points_mm.push_back(in_part_frame(position_ + air_mm_ * setup_.to_source));
-      if (!setup_.stops.passes_both_ways(position_, setup_.to_source, setup_.to_source)) return stop_before_face();
+      if (!setup_.stops.reaches(position_, setup_.to_source)) return stop_before_face();
       direction_ = setup_.entry.direction;
       light_ = setup_.entry.light;
       add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});

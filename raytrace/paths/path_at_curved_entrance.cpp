@@ -46,7 +46,7 @@ bool PathWalker::advance_above(State& state) {
 }
 
 bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const Vec3& normal) {
-  if (is_at_stop(state.position)) return finish(state, Account::stopped);
+  if (is_on_chamfer(state.position)) return finish(state, Account::stopped);
   const bool from_inside = state.inside;
   const bool is_first = state.entrance_source == FacetRef{} && !from_inside;
   const Vec3 against = from_inside ? Vec3(-normal) : normal;

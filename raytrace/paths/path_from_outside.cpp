@@ -145,7 +145,7 @@ bool PathWalker::stop_at_mount(State& state) {
 bool PathWalker::arrive_at_entrance(State& state) {
   ++tally_.segments;
   arrival_ = Arrival::entrance;
-  if (is_at_stop(state.position)) {
+  if (is_on_chamfer(state.position)) {
     finish(state, Account::stopped);
     return true;
   }

@@ -129,7 +129,7 @@ void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
-  if (is_at_stop(state.position) || !setup_.stops.passes_mount(state.position, setup_.to_source)) {
+  if (!setup_.stops.reaches(state.position, setup_.to_source)) {
     tally_.other[Account::stopped] += setup_.incident.power();
     return;
   }
@@ -376,7 +376,7 @@ bool PathWalker::is_over_part(const Vec3& position) const {
 
 bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
-  if (is_at_stop(state.position)) return finish(state, Account::stopped);
+  if (is_on_chamfer(state.position)) return finish(state, Account::stopped);
   if (setup_.contaminated_entrance) return meet_contaminated_entrance(state);
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
@@ -403,7 +403,7 @@ bool PathWalker::meet_entrance(State& state) {
 
 /// Traces light from the entrance face past the mount and through all shells, and records it if it passes them.
 /// \param record member function that records the light
-void PathWalker::record_beyond_shells(Record record, const State& state, const Light& light, const Vec3& direction) {
+void PathWalker::record_outside(Record record, const State& state, const Light& light, const Vec3& direction) {
   if (!setup_.stops.passes_mount(state.position, direction)) {
     tally_.other[Account::stopped] += light.power();
     return;
@@ -420,7 +420,7 @@ void PathWalker::record_beyond_shells(Record record, const State& state, const L
 /// \param state position of the light on the face
 /// \param direction direction of the light in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
-  record_beyond_shells(&PathWalker::record_return, state, light, direction);
+  record_outside(&PathWalker::record_return, state, light, direction);
 }
 
 /// Records light that leaves through the entrance face and through all shells.
@@ -434,7 +434,7 @@ void PathWalker::record_return(const State& state, const Light& light, const Vec
 
 /// Records light that the entrance face reflects before the light enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
-  record_beyond_shells(&PathWalker::record_front_reflection, state, light, direction);
+  record_outside(&PathWalker::record_front_reflection, state, light, direction);
 }
 
 /// Records light that the entrance face has reflected and that has left through all shells.

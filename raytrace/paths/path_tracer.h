@@ -145,10 +145,10 @@ class PathWalker {
   bool meet_contaminated_entrance(const State& state);
   const EntranceScatter& scatter_at_face(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
-  bool is_at_stop(const Vec3& position) const { return !setup_.stops.is_clear(position.head<2>()); }
+  bool is_on_chamfer(const Vec3& position) const { return !setup_.stops.is_clear(position.head<2>()); }
   /// Member function that records light outside all shells.
   using Record = void (PathWalker::*)(const State& state, const Light& light, const Vec3& direction);
-  void record_beyond_shells(Record record, const State& state, const Light& light, const Vec3& direction);
+  void record_outside(Record record, const State& state, const Light& light, const Vec3& direction);
   void leave(const State& state, const Light& light, const Vec3& direction);
   void record_return(const State& state, const Light& light, const Vec3& direction);
   void record_front_reflection(const State& state, const Light& light, const Vec3& direction);

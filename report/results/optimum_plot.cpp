@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,10 @@ std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std:
 std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, std::size_t parameter) {
   std::vector<Range> ranges;
   bool is_inside = false;
-  double last = 0.0;
+  std::optional<double> last;
   for (const Variant* const design : designs) {
     const double here = number_of(*design, parameter);
-    const double border = is_inside || last != 0.0 ? 0.5 * (last + here) : here;
+    const double border = last ? 0.5 * (*last + here) : here;
     if (design->feasible() && !is_inside) ranges.push_back({border, here});
     if (design->feasible()) ranges.back().high = here;
     if (!design->feasible() && is_inside) ranges.back().high = border;

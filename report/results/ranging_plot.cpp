@@ -13,7 +13,6 @@ namespace {
 
 using studies::RangingMap, studies::RangingResult;
 
-constexpr double kArcsecOfRad = 3600.0 / kRadPerDeg;
 constexpr double kMillionM2 = 1e6;
 
 std::string ranging_title(const RangingResult& result) {
@@ -30,7 +29,7 @@ ImagePanel ranging_panel(const RangingMap& map, const char* title, double full_v
   panel.title = title;
   panel.value_label = "cross section (10⁶ m²)";
   panel.columns = panel.rows = map.points;
-  panel.width = 2.0 * map.half_width_rad * kArcsecOfRad;
+  panel.width = 2.0 * map.half_width_rad * kArcsecPerRad;
   panel.length_unit = "arcsec";
   panel.full_value = full_value;
   for (std::size_t row = map.points; row-- > 0;)
@@ -66,7 +65,7 @@ LinePlot ranging_rings_plot(const RangingResult& result) {
   Series min{"minimum", {}, {}, {}};
   Series max{"maximum", {}, {}, {}};
   for (std::size_t k = 0; k < result.map.ring_rad.size(); ++k) {
-    const double angle = result.map.ring_rad[k] * kArcsecOfRad;
+    const double angle = result.map.ring_rad[k] * kArcsecPerRad;
     mean.add(angle, result.map.ring_m2[k].mean / kMillionM2);
     min.add(angle, result.map.ring_m2[k].min / kMillionM2);
     max.add(angle, result.map.ring_m2[k].max / kMillionM2);

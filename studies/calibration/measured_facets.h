@@ -18,8 +18,6 @@
 
 namespace retrace::studies {
 
-inline constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
-
 /// Measured quantity of a facet, as the deviation from the design. Distances are positive if excess material remains.
 /// The root is the line at the bottom of a groove, where its two facets meet. For a cube corner, the horizontal line of
 /// a facet replaces the root.

@@ -156,27 +156,21 @@ bool may_be_noisy(const Study& study) {
   }
 }
 
-std::vector<Observation> DesignFunction::observe(const std::vector<SearchTrial>& trials) {
-  std::vector<Observation> seen(trials.size());
-  std::map<ErrorLevel, std::vector<std::size_t>> by_level;
-  for (std::size_t k = 0; k < trials.size(); ++k) by_level[trials[k].level].push_back(k);
-  for (const auto& [level, numbers] : by_level) {
-    std::vector<PointValues> designs;
-    for (const std::size_t k : numbers) designs.push_back(design_at(trials[k].at));
-    const std::vector<Variant> variants = evaluator_.evaluate(designs, level);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const Variant& variant = variants[i];
-      Observation& observation = seen[numbers[i]];
-      if (variant.objective) observation.objective = Estimate{*variant.objective, variant.objective_error};
-      const auto add = [&](std::optional<double> excess, const std::string& quantity) {
-        observation.excess.push_back({excess.value_or(std::numeric_limits<double>::infinity()),
-                                      excess ? evaluator_.error_of(variant, quantity) : 0.0});
-      };
-      for (const Constraint& constraint : request_.constraints) {
-        const std::optional<double> value = evaluator_.value(variant, constraint.quantity);
-        if (constraint.min) add(value ? std::optional(*constraint.min - *value) : std::nullopt, constraint.quantity);
-        if (constraint.max) add(value ? std::optional(*value - *constraint.max) : std::nullopt, constraint.quantity);
-      }
+std::vector<Observation> DesignFunction::observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) {
+  std::vector<PointValues> designs;
+  for (const SearchPoint& point : points) designs.push_back(design_at(point));
+  std::vector<Observation> seen;
+  for (const Variant& variant : evaluator_.evaluate(designs, level)) {
+    Observation& observation = seen.emplace_back();
+    if (variant.objective) observation.objective = Estimate{*variant.objective, variant.objective_error};
+    const auto add = [&](std::optional<double> excess, const std::string& quantity) {
+      observation.excess.push_back({excess.value_or(std::numeric_limits<double>::infinity()),
+                                    excess ? evaluator_.error_of(variant, quantity) : 0.0});
+    };
+    for (const Constraint& constraint : request_.constraints) {
+      const std::optional<double> value = evaluator_.value(variant, constraint.quantity);
+      if (constraint.min) add(value ? std::optional(*constraint.min - *value) : std::nullopt, constraint.quantity);
+      if (constraint.max) add(value ? std::optional(*value - *constraint.max) : std::nullopt, constraint.quantity);
     }
   }
   return seen;

@@ -63,7 +63,7 @@ class DesignFunction final : public SearchedFunction {
     return scan_.with(scan_.combinations()[point.combination], point.fractions);
   }
 
-  std::vector<Observation> observe(const std::vector<SearchTrial>& trials) override;
+  std::vector<Observation> observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) override;
   bool is_allowed(const SearchPoint& point) const override;
   std::vector<SearchPoint> peaks_near(const SearchPoint& point, double within) const override;
   std::vector<SearchPoint> rounder_points(const SearchPoint& point, double within) const override;

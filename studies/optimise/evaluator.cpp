@@ -140,7 +140,6 @@ void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const c
   const std::string key = key_of(design);
   std::map<ErrorLevel, Variant>& results = by_level_[key];
   if (!results.emplace(level, variant_of(point, design)).second) return;
-  ++results_;
   const auto [at, is_new] = numbers_.try_emplace(key, evaluated_.size());
   if (is_new) {
     evaluated_.push_back(results.begin()->second);
@@ -179,7 +178,7 @@ Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
 /// Reports a design to the observer if it is better than all designs that were reported before.
 void Evaluator::report_best(const Variant& variant) {
   if (!variant.feasible()) return;
-  const double value = *variant.objective - 2.0 * variant.objective_error;
+  const double value = variant.cautious_objective();
   if (best_value_ && value <= *best_value_) return;
   best_value_ = value;
   if (observer_ != nullptr) observer_->at_best(variant);
@@ -204,7 +203,6 @@ void Evaluator::add_evaluated(const std::vector<Variant>& seen) {
     if (!numbers_.try_emplace(key, evaluated_.size()).second) continue;
     check_constraints(variant);
     by_level_[key].emplace(ErrorLevel{}, variant);
-    ++results_;
     evaluated_.push_back(std::move(variant));
   }
 }

@@ -34,8 +34,6 @@ class Evaluator {
   /// Returns the most accurate result of an evaluated design. It is the mean of the results that were computed with the
   /// smallest requested error.
   const Variant& most_accurate(const PointValues& design) const { return evaluated_[numbers_.at(key_of(design))]; }
-  /// Returns the number of results. A design that was evaluated at several levels has several results.
-  std::size_t results() const { return results_; }
   /// Adds designs that another search of this study has evaluated. They are not evaluated again.
   void add_evaluated(const std::vector<Variant>& seen);
 
@@ -78,7 +76,6 @@ class Evaluator {
   /// Results of each design at all levels. The key is a string that contains the parameter values.
   std::map<std::string, std::map<ErrorLevel, Variant>> by_level_;
   std::optional<double> best_value_;  ///< compared value of the best design, see OptimiseObserver::at_best()
-  std::size_t results_ = 0;
   std::vector<Variant> evaluated_;
   std::set<std::uint64_t> used_numbers_;  ///< numbers of the points in the store
   std::size_t budget_failures_ = 0;

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "studies/optimise/local_model.h"
+#include "studies/optimise/refine.h"
 
 namespace retrace::studies {
 namespace {
@@ -27,10 +28,8 @@ double explained_variance(const Study& study, const Optimum& optimum, std::size_
   if (values.empty() || !(high > low)) return 0.0;
   mean /= static_cast<double>(values.size());
   const bool is_logarithmic = study.parameters[parameter].interval && study.parameters[parameter].interval->logarithmic;
-  const auto fraction = [&](double value) {
-    return is_logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-  };
-  for (FittedValue& value : values) value.at[0] = fraction(value.at[0]);
+  const Interval seen{low, high, is_logarithmic};
+  for (FittedValue& value : values) value.at[0] = fraction_of(seen, value.at[0]);
   const LocalModel model({{0.5}, 0.5}, values);
   double all = 0.0;
   double remaining = 0.0;

@@ -19,8 +19,6 @@ constexpr double kRoundingErrors = 1.5;
 /// Initial SearchBox::radius for the fit of models, as a multiple of the distance between neighbouring points of the
 /// scan.
 constexpr double kFirstBox = 3.5;
-/// Maximum change of a value by rounding, as a multiple of the distance between neighbouring points of the scan.
-constexpr double kRoundingBox = 1.5;
 constexpr double kSmallestBox = 1e-8;
 /// Maximum LocalModel::deviation() of a model that is regarded as accurate.
 constexpr double kAdequate = 1.3;
@@ -28,11 +26,8 @@ constexpr double kAdequate = 1.3;
 constexpr double kBoxErrors = 6.0;
 /// Gain of the objective below which a search without random errors ends, as a fraction of the objective.
 constexpr double kSmallestGain = 1e-9;
-/// Maximum number of points of SearchedFunction::peaks_near() that are observed near a start.
+/// Maximum number of points of nearest_of().
 constexpr std::size_t kMaxPeaks = 6;
-/// Maximum distance between a start and the points of peaks_near(), as a multiple of the distance between neighbouring
-/// points of the scan.
-constexpr double kPeakBox = 3.0;
 /// Maximum number of scan points per combination of discrete values that are observed again with a smaller error.
 constexpr std::size_t kMaxContenders = 5;
 /// Maximum number of points with rounder values that are observed.
@@ -42,6 +37,12 @@ constexpr std::size_t kMaxCompared = 3;
 
 double square(double x) {
   return x * x;
+}
+
+double distance(const SearchPoint& a, const SearchPoint& b) {
+  double max = 0.0;
+  for (std::size_t k = 0; k < a.fractions.size(); ++k) max = std::max(max, std::abs(a.fractions[k] - b.fractions[k]));
+  return max;
 }
 
 /// Search for the maximum of a function. It stores all observations.
@@ -62,7 +63,6 @@ class NoisySearch {
     if (best) {
       const SearchPoint precise = *best;
       best = rounded(*best);
-      optimum.objective = *estimate(*best);
       optimum.resolution = resolution(precise, *best);
     }
     optimum.best = best;
@@ -72,19 +72,17 @@ class NoisySearch {
   }
 
  private:
-  using Level = ErrorLevel;
-
   /// Observes points at a level of accuracy. Points that have been observed at this level are skipped.
-  void observe(const std::vector<SearchPoint>& points, Level level) {
-    std::vector<SearchTrial> trials;
+  void observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) {
+    std::vector<SearchPoint> open;
     std::set<SearchPoint> added;
     for (const SearchPoint& point : points)
-      if (!known_[point].contains(level) && added.insert(point).second) trials.push_back({point, level});
-    if (trials.empty()) return;
-    const std::vector<Observation> seen = function_.observe(trials);
-    observations_ += trials.size();
-    for (std::size_t k = 0; k < trials.size(); ++k) {
-      known_[trials[k].at].emplace(level, seen[k]);
+      if (!known_[point].contains(level) && added.insert(point).second) open.push_back(point);
+    if (open.empty()) return;
+    const std::vector<Observation> seen = function_.observe(open, level);
+    observations_ += open.size();
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      known_[open[k]].emplace(level, seen[k]);
       const auto has_error = [](const Estimate& value) { return value.std_error > 0.0; };
       has_noise_ = has_noise_ || (seen[k].objective && has_error(*seen[k].objective)) ||
                    std::ranges::any_of(seen[k].excess, has_error);
@@ -127,11 +125,7 @@ class NoisySearch {
     return {mean.value / count, std::sqrt(mean.std_error) / count};
   }
 
-  std::size_t limits() const {
-    for (const auto& [point, seen] : known_)
-      if (!seen.empty()) return seen.begin()->second.excess.size();
-    return 0;
-  }
+  std::size_t limits() const { return known_.empty() ? 0 : known_.begin()->second.begin()->second.excess.size(); }
 
   bool is_feasible(const SearchPoint& point) const {
     if (!estimate(point)) return false;
@@ -150,7 +144,7 @@ class NoisySearch {
   std::vector<SearchPoint> feasible_points() const {
     std::vector<SearchPoint> found;
     for (const auto& [point, seen] : known_)
-      if (!seen.empty() && is_feasible(point)) found.push_back(point);
+      if (is_feasible(point)) found.push_back(point);
     return found;
   }
 
@@ -168,22 +162,17 @@ class NoisySearch {
       if (const auto best = best_of(points)) found.push_back(*best);
     std::ranges::stable_sort(
         found, [&](const SearchPoint& a, const SearchPoint& b) { return estimate(a)->value > estimate(b)->value; });
-    if (found.empty() || found.front().fractions.empty()) {
-      if (found.size() > settings_.max_finalists) found.resize(settings_.max_finalists);
-      return found;
-    }
     if (found.size() > settings_.max_combinations) found.resize(settings_.max_combinations);
     return found;
   }
 
-  Level refinement_level() const { return {has_noise_ ? settings_.refinement_scale : settings_.scan_scale, 0}; }
+  ErrorLevel refinement_level() const { return {has_noise_ ? settings_.refinement_scale : settings_.scan_scale, 0}; }
 
   /// Returns all observed points of a combination in a box that have an objective.
   std::vector<SearchPoint> points_in(std::size_t combination, const SearchBox& box) const {
     std::vector<SearchPoint> found;
     for (const auto& [point, seen] : known_)
-      if (point.combination == combination && !seen.empty() && box.contains(point.fractions) && estimate(point))
-        found.push_back(point);
+      if (point.combination == combination && box.contains(point.fractions) && estimate(point)) found.push_back(point);
     return found;
   }
 
@@ -332,12 +321,6 @@ class NoisySearch {
     return here.std_error / scale;
   }
 
-  static double distance(const SearchPoint& a, const SearchPoint& b) {
-    double max = 0.0;
-    for (std::size_t k = 0; k < a.fractions.size(); ++k) max = std::max(max, std::abs(a.fractions[k] - b.fractions[k]));
-    return max;
-  }
-
   /// Observes the scan points whose difference from `start` is below the errors of the scan. `start` is the best scan
   /// point of its combination of discrete values. Returns the best point after these observations.
   SearchPoint best_contender(const SearchPoint& start) {
@@ -362,9 +345,7 @@ class NoisySearch {
   SearchPoint best_peak(const SearchPoint& start) {
     std::vector<SearchPoint> peaks = function_.peaks_near(start, kPeakBox * settings_.spacing);
     std::erase_if(peaks, [&](const SearchPoint& peak) { return !function_.is_allowed(peak); });
-    std::ranges::stable_sort(
-        peaks, [&](const SearchPoint& a, const SearchPoint& b) { return distance(a, start) < distance(b, start); });
-    if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
+    peaks = nearest_of(std::move(peaks), start);
     peaks.push_back(start);
     observe(peaks, refinement_level());
     return best_of(peaks).value_or(start);
@@ -478,7 +459,7 @@ class NoisySearch {
   SearchedFunction& function_;
   const NoisySearchSettings& settings_;
   /// Observations of each point. The most accurate observation comes first.
-  std::map<SearchPoint, std::map<Level, Observation>> known_;
+  std::map<SearchPoint, std::map<ErrorLevel, Observation>> known_;
   /// Model that fits all points in a box within their errors.
   struct AdequateModel {
     SearchBox box;
@@ -492,6 +473,13 @@ class NoisySearch {
 };
 
 }  // namespace
+
+std::vector<SearchPoint> nearest_of(std::vector<SearchPoint> peaks, const SearchPoint& at) {
+  std::ranges::stable_sort(
+      peaks, [&](const SearchPoint& a, const SearchPoint& b) { return distance(a, at) < distance(b, at); });
+  if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
+  return peaks;
+}
 
 Estimate paired_difference(const std::vector<Estimate>& a, const std::vector<Estimate>& b) {
   const double count = static_cast<double>(a.size());

@@ -12,6 +12,12 @@
 
 namespace retrace::studies {
 
+/// Maximum change of a value by rounding, as a multiple of the distance between neighbouring points of the scan.
+inline constexpr double kRoundingBox = 1.5;
+/// Maximum distance between a start and the points of SearchedFunction::peaks_near(), as a multiple of the distance
+/// between neighbouring points of the scan.
+inline constexpr double kPeakBox = 3.0;
+
 /// Settings of a search.
 struct NoisySearchSettings {
   /// Values of ErrorLevel::scale for the first scan, for the refinement and for the last comparison.
@@ -28,7 +34,6 @@ struct NoisySearchSettings {
 /// Result of a search.
 struct NoisyOptimum {
   std::optional<SearchPoint> best;  ///< empty if no observed point satisfies the limits
-  Estimate objective;               ///< objective at the best point
   /// Upper limit of the difference between the maximum near the observed points and the objective at the best point,
   /// with a confidence of 95 %. The limit includes the loss by rounding. It is 0 if observations have no random errors.
   double resolution = 0.0;
@@ -40,10 +45,14 @@ struct NoisyOptimum {
 /// with a large error. Near the best points, quadratic models of the objective and of the constraints are fitted to the
 /// observations. The maximum of the objective's model is observed with a smaller error. The refinement ends when the
 /// model predicts differences below the error. The last candidates are compared replicate by replicate. Finally, the
-/// best point is replaced by a point with rounder values if the errors do not distinguish the two points.
+/// best point is replaced by a point with rounder values if the errors do not distinguish the two points. If a function
+/// has no random errors, the same steps are made without repetitions. Tests compare both numbers of observations.
 /// \param scan points of the scan for each combination of discrete values
 NoisyOptimum search_with_noise(SearchedFunction& function, const std::vector<std::vector<SearchPoint>>& scan,
                                const NoisySearchSettings& settings);
+
+/// Returns the points of `peaks` that are nearest to `at`, the nearest point first. Their number is limited.
+std::vector<SearchPoint> nearest_of(std::vector<SearchPoint> peaks, const SearchPoint& at);
 
 /// Returns the mean difference of the objective between two points, and the standard error of this mean.
 /// \param a objectives of the first point, one for each replicate

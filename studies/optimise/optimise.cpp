@@ -16,24 +16,13 @@
 namespace retrace::studies {
 namespace {
 
-/// Number of combinations of discrete values for which the best design of the first scan is refined.
-constexpr std::size_t kRefined = 3;
-/// Maximum loss of the objective that rounding the parameters may cause, as a fraction of the objective.
-constexpr double kForRoundness = 1e-6;
 /// Maximum loss of the objective for which a cheaper design is proposed, as a fraction of the objective.
 constexpr double kNearlyAsGood = 0.01;
 /// Minimum gain for which a cheaper design is proposed. It is measured on the axis of the Pareto front, as a fraction
 /// of the best design's value on this axis.
 constexpr double kWorthIt = 1e-3;
-/// Target error of the first scan if quantities have random errors, as a multiple of the target error of the study.
-constexpr double kScanScale = 16.0;
-/// Maximum distance between the best design of the scan and the designs of best_peak(), as a multiple of the scan's
-/// spacing.
-constexpr double kPeakBox = 3.0;
-/// Maximum number of designs that best_peak() evaluates.
-constexpr std::size_t kMaxPeaks = 6;
-/// Maximum change of a value by rounding, as a multiple of the scan's spacing.
-constexpr double kRoundingBox = 1.5;
+/// Settings that the search without random errors shares with the search with random errors.
+constexpr NoisySearchSettings kSearch;
 constexpr const char* kStoreKind = "retrace.optimum/2";
 constexpr const char* kLevelInputs[] = {"error_scale", "replicate"};
 
@@ -58,7 +47,7 @@ bool is_better(const Variant& a, const Variant& b) {
 
 /// Returns the target error of the first scan, as a multiple of the target error of the study.
 double scan_scale(const Study& study, const OptimiseRequest& request) {
-  return request.has_levels && may_be_noisy(study) ? kScanScale : 1.0;
+  return request.has_levels && may_be_noisy(study) ? kSearch.scan_scale : 1.0;
 }
 
 /// All designs of the first scan, as points of a sweep.
@@ -163,7 +152,7 @@ class DesignSearch {
     }
     std::stable_sort(starts.begin(), starts.end(),
                      [](const auto& a, const auto& b) { return is_better(a.second, b.second); });
-    if (starts.size() > kRefined) starts.resize(kRefined);
+    if (starts.size() > kSearch.max_combinations) starts.resize(kSearch.max_combinations);
     bool by_slopes = !starts.empty() && !continuous_.empty();
     for (const auto& start : starts) by_slopes = refine(study_, request_, evaluator_, start.second) && by_slopes;
     optimum.method = by_slopes ? "exact slopes" : "no slopes";
@@ -185,16 +174,9 @@ class DesignSearch {
   /// Returns the best design, which may be `start`.
   Variant best_peak(std::size_t combination, const Variant& start) {
     const SearchPoint at{combination, scan_.fractions_of(start.values)};
-    std::vector<SearchPoint> peaks = function_.peaks_near(at, kPeakBox * scan_.spacing());
-    const auto distance = [&](const SearchPoint& peak) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < peak.fractions.size(); ++k) sum += std::abs(peak.fractions[k] - at.fractions[k]);
-      return sum;
-    };
-    std::ranges::stable_sort(peaks, {}, distance);
-    if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
     std::vector<PointValues> designs;
-    for (const SearchPoint& peak : peaks) designs.push_back(function_.design_at(peak));
+    for (const SearchPoint& peak : nearest_of(function_.peaks_near(at, kPeakBox * scan_.spacing()), at))
+      designs.push_back(function_.design_at(peak));
     Variant best = start;
     for (const Variant& variant : evaluator_.evaluate(designs))
       if (variant.feasible() && is_better(variant, best)) best = variant;
@@ -231,7 +213,8 @@ class DesignSearch {
     for (const SearchPoint& round : function_.rounder_points(at, kRoundingBox * scan_.spacing())) {
       if (!function_.is_allowed(round)) continue;
       const Variant variant = evaluator_.evaluate(function_.design_at(round));
-      if (variant.feasible() && *variant.objective >= *best.objective - kForRoundness * std::abs(*best.objective))
+      if (variant.feasible() &&
+          *variant.objective >= *best.objective - kSearch.rounding_loss * std::abs(*best.objective))
         return variant;
     }
     return best;
@@ -335,7 +318,8 @@ bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
   return better;
 }
 
-std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator& evaluator) {
+/// Returns the feasible designs that no other design dominates. The best design on the first axis comes first.
+std::vector<Variant> pareto_front(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<std::pair<std::vector<double>, const Variant*>> open;
   for (const Variant& variant : evaluator.evaluated()) {
     if (!variant.feasible()) continue;
@@ -421,7 +405,7 @@ void add_results(const OptimiseRequest& request, const Evaluator& evaluator, std
   optimum.rejected.insert(optimum.rejected.end(), neighbours.begin(), neighbours.end());
   for (Rejected& rejected : optimum.rejected)
     rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
-  optimum.front = entrance_of(request, evaluator);
+  optimum.front = pareto_front(request, evaluator);
   optimum.cheaper = cheaper_than(optimum, request, evaluator);
 }
 
@@ -438,7 +422,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   // If a neighbour is better than the result of the search, it replaces the result.
   if (const auto best = searching.best_seen();
       !searching.is_noisy() &&
-      *best->objective > *optimum.best->objective + kForRoundness * std::abs(*optimum.best->objective)) {
+      *best->objective > *optimum.best->objective + kSearch.rounding_loss * std::abs(*optimum.best->objective)) {
     optimum.best = best;
     neighbours = searching.neighbours(*best);
   }
@@ -453,9 +437,9 @@ void finish_early(const OptimiseRequest& request, Evaluator& evaluator, Optimum&
   optimum = {};
   optimum.complete = false;
   evaluator.add_stored();
-  const auto value = [](const Variant& variant) { return *variant.objective - 2.0 * variant.objective_error; };
   for (const Variant& variant : evaluator.evaluated())
-    if (variant.feasible() && (!optimum.best || value(variant) > value(*optimum.best))) optimum.best = variant;
+    if (variant.feasible() && (!optimum.best || variant.cautious_objective() > optimum.best->cautious_objective()))
+      optimum.best = variant;
   if (optimum.best) add_results(request, evaluator, {}, optimum);
 }
 

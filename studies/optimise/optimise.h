@@ -54,6 +54,9 @@ struct Variant {
   double objective_error = 0.0;     ///< standard error of the objective
   std::vector<std::size_t> broken;  ///< indices of the violated constraints
   bool feasible() const { return objective.has_value() && broken.empty(); }
+  /// Returns the value by which designs with random errors are compared: the objective minus twice its standard error.
+  /// \pre the design has an objective
+  double cautious_objective() const { return *objective - 2.0 * objective_error; }
 };
 
 /// Design that was not chosen, and the reason.

@@ -16,18 +16,7 @@ struct SearchPoint {
   std::size_t combination = 0;    ///< index of the combination of discrete values
   std::vector<double> fractions;  ///< positions of the continuous parameters in their intervals, from 0 to 1
 
-  bool operator==(const SearchPoint&) const = default;
-  auto operator<=>(const SearchPoint& other) const {
-    if (combination != other.combination)
-      return combination < other.combination ? std::partial_ordering::less : std::partial_ordering::greater;
-    return fractions <=> other.fractions;
-  }
-};
-
-/// Point that is to be observed, and the accuracy of the observation.
-struct SearchTrial {
-  SearchPoint at;
-  ErrorLevel level;
+  auto operator<=>(const SearchPoint&) const = default;
 };
 
 /// Value with its standard error.
@@ -36,7 +25,7 @@ struct Estimate {
   double std_error = 0.0;
 };
 
-/// Result of a trial.
+/// Observed values of a point.
 struct Observation {
   std::optional<Estimate> objective;  ///< empty if the objective has no value at this point
   /// Amount by which each limit is exceeded. A limit is satisfied if this amount is at most 0. The amount is infinite
@@ -52,8 +41,8 @@ class SearchedFunction {
   SearchedFunction(const SearchedFunction&) = delete;
   SearchedFunction& operator=(const SearchedFunction&) = delete;
 
-  /// Observes points and returns the results in the given order.
-  virtual std::vector<Observation> observe(const std::vector<SearchTrial>& trials) = 0;
+  /// Observes points at a level of accuracy. Returns the results in the order of the points.
+  virtual std::vector<Observation> observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) = 0;
   /// Returns true if a point satisfies all limits that can be checked without an observation.
   virtual bool is_allowed(const SearchPoint& point) const {
     static_cast<void>(point);

@@ -73,15 +73,8 @@ double travel_of(const fabrication::Job& job, const fabrication::Machine& machin
 void take_machining(const MachiningProcess& process, fabrication::Job& job) {
   job.tool.edge_radius_um = process.edge_radius_um;
   job.tool.edge_life_mm = process.edge_life_mm;
-  job.process.clearance_mm = process.clearance_um / kUmPerMm;
-  job.process.roughing_depth_um = process.roughing_depth_um;
-  job.process.finishing_depth_um = process.finishing_depth_um;
   job.process.finishing_cuts = process.finishing_cuts;
-  job.process.plough_length_mm = process.plough_length_um / kUmPerMm;
-  job.process.dwell_s = process.dwell_s;
-  job.process.roughing_feed_mm_per_min = process.roughing_feed_mm_per_min;
-  job.process.finishing_feed_mm_per_min = process.finishing_feed_mm_per_min;
-  job.process.retract_feed_mm_per_min = process.traverse_feed_mm_per_min;
+  for (const ProcessValue& value : kProcessValues) job.process.*value.process = process.*value.machining / value.factor;
 }
 
 MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess& process) {

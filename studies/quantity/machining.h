@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/length_units.h"
 #include "fabrication/job/job.h"
 #include "geometry/elements/part_spec.h"
 
@@ -35,6 +36,26 @@ struct MachiningProcess {
   /// True: the design gets the facet texture and the root radius that result from cutting.
   bool surface_as_cut = false;
 };
+
+/// Value that [machining] and a process of fabrication have in common.
+struct ProcessValue {
+  const char* key;  ///< key of [machining]
+  double MachiningProcess::*machining;
+  double fabrication::Process::*process;
+  double factor = 1.0;  ///< value of [machining] divided by the value of the process
+};
+inline constexpr ProcessValue kProcessValues[] = {
+    {"clearance_um", &MachiningProcess::clearance_um, &fabrication::Process::clearance_mm, kUmPerMm},
+    {"roughing_depth_um", &MachiningProcess::roughing_depth_um, &fabrication::Process::roughing_depth_um},
+    {"finishing_depth_um", &MachiningProcess::finishing_depth_um, &fabrication::Process::finishing_depth_um},
+    {"plough_length_um", &MachiningProcess::plough_length_um, &fabrication::Process::plough_length_mm, kUmPerMm},
+    {"roughing_feed_mm_per_min", &MachiningProcess::roughing_feed_mm_per_min,
+     &fabrication::Process::roughing_feed_mm_per_min},
+    {"finishing_feed_mm_per_min", &MachiningProcess::finishing_feed_mm_per_min,
+     &fabrication::Process::finishing_feed_mm_per_min},
+    {"traverse_feed_mm_per_min", &MachiningProcess::traverse_feed_mm_per_min,
+     &fabrication::Process::retract_feed_mm_per_min},
+    {"dwell_s", &MachiningProcess::dwell_s, &fabrication::Process::dwell_s}};
 
 /// Returns the areal roughness Sa of the facets after cutting, in nm; see predicted_texture() in studies/closed_loop.
 double process_sa_nm(const MachiningProcess& process);

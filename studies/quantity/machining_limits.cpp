@@ -16,10 +16,25 @@ bool is_given(const Study& study, const std::string& key) {
          });
 }
 
-bool has_prisms(const Study& study) {
+/// Limit of the tool or the machine: a quantity that must be at least 0.
+struct MachiningLimit {
+  const char* quantity;
+  PlainQuantity kind;
+  const char* key;  ///< key that must be given
+  bool needs_machine;
+};
+constexpr MachiningLimit kLimits[] = {
+    {"tool_fit_mm", PlainQuantity::tool_fit_mm, "machining.tool_width_mm", false},
+    {"machine_travel_mm", PlainQuantity::machine_travel_mm, "machining.machine", true},
+    {"edge_life_margin_mm", PlainQuantity::edge_life_margin_mm, "machining.edge_life_mm", true}};
+
+/// Returns true if the study respects limits, and its first design is an array of prisms.
+bool respects_limits(const Study& study) {
   try {
-    const design::Design design = make_candidate(study, example_values(study)).design();
-    return design.elements() != nullptr && std::holds_alternative<geometry::RtpElement>(design.part().element);
+    const Candidate candidate = make_candidate(study, example_values(study));
+    const design::Design& design = candidate.design();
+    return candidate.machining().has_limits && design.elements() != nullptr &&
+           std::holds_alternative<geometry::RtpElement>(design.part().element);
   } catch (const InputError&) {
     return false;  // the study reports an invalid design when it computes the design
   }
@@ -29,26 +44,20 @@ bool has_prisms(const Study& study) {
 
 std::vector<Constraint> machining_limits(const Study& study) {
   std::vector<Constraint> limits;
-  if (study.document->text("machining.limits") == "ignore") return limits;
-  const auto add = [&](const char* quantity) { limits.push_back({quantity, 0.0, {}}); };
-  if (is_given(study, "machining.tool_width_mm")) add("tool_fit_mm");
   const bool has_machine = is_given(study, "machining.machine");
-  if (has_machine) add("machine_travel_mm");
-  if (has_machine && is_given(study, "machining.edge_life_mm")) add("edge_life_margin_mm");
-  if (!limits.empty() && !has_prisms(study)) limits.clear();
+  for (const MachiningLimit& limit : kLimits)
+    if (is_given(study, limit.key) && (has_machine || !limit.needs_machine))
+      limits.push_back({limit.quantity, 0.0, {}});
+  if (!limits.empty() && !respects_limits(study)) limits.clear();
   return limits;
 }
 
 Study with_machining_limits(Study study) {
-  constexpr std::pair<const char*, PlainQuantity> kinds[] = {
-      {"tool_fit_mm", PlainQuantity::tool_fit_mm},
-      {"machine_travel_mm", PlainQuantity::machine_travel_mm},
-      {"edge_life_margin_mm", PlainQuantity::edge_life_margin_mm}};
   for (const Constraint& limit : machining_limits(study)) {
     if (std::ranges::any_of(study.quantities, [&](const auto& each) { return each->name() == limit.quantity; }))
       continue;
-    for (const auto& [name, kind] : kinds)
-      if (limit.quantity == name) study.quantities.push_back(make_plain(name, kind));
+    for (const MachiningLimit& each : kLimits)
+      if (limit.quantity == each.quantity) study.quantities.push_back(make_plain(each.quantity, each.kind));
   }
   return study;
 }

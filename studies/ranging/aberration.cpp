@@ -17,7 +17,7 @@ using geometry::Vec2;
 // Gravitational constant times the mass of the Earth, and its equatorial radius (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthKm3PerS2 = 398600.4418;
 constexpr double kEarthRadiusKm = 6378.1366;
-constexpr double kLightKmPerS = 299792.458;
+constexpr double kLightKmPerS = 1e6 * kLightMmPerPs;
 
 // Number of integration points per width of the finest details, and number of additional points.
 constexpr double kPointsPerDetail = 3.0;

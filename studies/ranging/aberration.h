@@ -10,6 +10,8 @@
 
 namespace retrace::studies {
 
+inline constexpr double kLightMmPerPs = 0.299792458;  ///< speed of light in vacuum
+
 /// Directions whose angle from the direction to the source is between two limits.
 struct Annulus {
   double inner_rad = 0.0;

@@ -10,12 +10,13 @@
 #include "core/angle.h"
 #include "core/random.h"
 #include "core/threads.h"
+#include "studies/ranging/aberration.h"
 
 namespace retrace::studies {
 namespace {
 
 // Half of the distance that light travels in 1 ps.
-constexpr double kOneWayMmPerPs = 0.5 * 0.299792458;
+constexpr double kOneWayMmPerPs = 0.5 * kLightMmPerPs;
 // Margin of the response in front of the first cube and behind the last cube, and distance between points of the
 // response. Both are in standard deviations of the pulse.
 constexpr double kResponseMargin = 5.0;
@@ -104,9 +105,7 @@ Shot pulsed_shot(const Emitters& all, const std::vector<std::complex<double>>& p
 }  // namespace
 
 std::array<Eigen::Vector2cd, 2> pure_states(const raytrace::Stokes& sent) {
-  Eigen::Matrix2cd c;
-  c << sent.i + sent.q, std::complex<double>(sent.u, -sent.v), std::complex<double>(sent.u, sent.v), sent.i - sent.q;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(0.5 * c);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(raytrace::coherency_of_source(sent));
   std::array<Eigen::Vector2cd, 2> states;
   for (int k = 0; k < 2; ++k)
     states[static_cast<std::size_t>(k)] =

@@ -31,6 +31,9 @@ struct RangeDistribution {
   double rms_mm = 0.0;            ///< standard deviation of the ranges
   double nearest_mm = 0.0;        ///< range of the nearest cube that returns light
   double farthest_mm = 0.0;
+
+  /// Returns true if at least one cube returns light, so that the ranges are defined.
+  bool has_light() const { return cross_section_m2 > 0.0; }
 };
 RangeDistribution distribution_of(const std::vector<CubeEcho>& echoes);
 

@@ -69,13 +69,6 @@ double group_index_at(const design::OpticsOfDesign& optics, double wavelength_nm
   return index(0) - wavelength_nm * slope;
 }
 
-double diameter_of(const geometry::Part& part) {
-  double widest = 0.0;
-  for (const Vec2& a : part.outline)
-    for (const Vec2& b : part.outline) widest = std::max(widest, (a - b).norm());
-  return widest;
-}
-
 }  // namespace
 
 double range_correction_mm(double depth_mm, double index, double group_index, double sine) {
@@ -95,7 +88,6 @@ struct CubeCorner::Prepared {
   std::optional<raytrace::BeamTracer> tracer;
   std::vector<CubeIndex> indices;
   std::vector<Eigen::Matrix2d> symmetries;
-  double diameter_mm = 0.0;
   bool entrance_reflections = false;
 };
 
@@ -119,7 +111,6 @@ CubeCorner::CubeCorner(design::Design design, const std::vector<double>& wavelen
   design::Design unpolarised = p.design;
   unpolarised.light.polarisation = raytrace::kUnpolarised;
   p.symmetries = design::light_symmetries(unpolarised, p.model);
-  p.diameter_mm = diameter_of(p.model.part);
   prepared_ = prepared;
 }
 
@@ -138,10 +129,6 @@ double CubeCorner::depth_mm() const {
 double CubeCorner::entrance_mm2() const {
   return prepared_->model.part.entrance_area_mm2;
 }
-double CubeCorner::diameter_mm() const {
-  return prepared_->diameter_mm;
-}
-
 CubeField CubeCorner::field(const Vec3& to_source, std::size_t wavelength, const Cancellation* cancel) const {
   const design::SpectralOptics& light = prepared_->model.spectral[wavelength];
   const raytrace::SourceAngles source = raytrace::source_angles(to_source);

@@ -58,8 +58,6 @@ class CubeCorner {
   double depth_mm() const;
   /// Returns the area of the entrance face.
   double entrance_mm2() const;
-  /// Returns the diameter of the entrance face, whose inverse determines the width of the far field.
-  double diameter_mm() const;
 
   /// Traces the light of one wavelength. Returns an empty field if the run was cancelled or no light returns.
   /// \param to_source unit vector in the part frame, with z > 0

@@ -17,18 +17,10 @@ constexpr double kMm2PerM2 = 1e6;
 // Minimum power of a beam that deflection_rad() takes into account, as a fraction of the diffracted power.
 constexpr double kNoticeablePower = 1e-2;
 
-/// Returns the coherency matrix of light that travels away from the source. The second axis of the matrix is opposite
-/// to the p axis of this light.
-Eigen::Matrix2cd sent_coherency(const Stokes& s) {
-  Eigen::Matrix2cd c;
-  c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;
-  return 0.5 * c;
-}
-
 }  // namespace
 
 Stokes returned_stokes(const JonesMatrix& jones, const Stokes& incident) {
-  const Eigen::Matrix2cd c = jones * sent_coherency(incident) * jones.adjoint();
+  const Eigen::Matrix2cd c = jones * raytrace::coherency_of_source(incident) * jones.adjoint();
   return {c(0, 0).real() + c(1, 1).real(), c(0, 0).real() - c(1, 1).real(), 2.0 * c(0, 1).real(), 2.0 * c(0, 1).imag()};
 }
 

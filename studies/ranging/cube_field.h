@@ -38,7 +38,6 @@ class CubeField {
   std::vector<DirectionField> at(std::span<const geometry::Vec3> directions) const;
 
   bool empty() const { return groups_.empty(); }
-  std::size_t group_count() const { return groups_.size(); }
   /// Returns the angular width of the finest details, in rad, or infinity if there is no light.
   double detail_rad() const { return detail_rad_; }
   /// Returns the largest angle between the direction to the source and a returned beam, without diffraction. Weak beams

@@ -46,7 +46,8 @@ raytrace::ReturnFrame return_frame_of(const Vec3& to_source) {
 LitCubes::LitCubes(const CubeSet& set, const Vec3& to_source, std::size_t wavelength, const Cancellation* cancel)
     : frame_(return_frame_of(to_source)) {
   std::map<LightKey, std::size_t> known;
-  const bool is_array = set.cubes.size() > 1;
+  // A single cube shares its field with no other cube. Its light is therefore traced in the given direction.
+  const bool may_share = set.cubes.size() > 1;
   for (std::size_t number = 0; number < set.cubes.size(); ++number) {
     const ArrayCube& cube = set.cubes[number];
     const std::size_t variant = set.variant_of_cube[number];
@@ -54,7 +55,7 @@ LitCubes::LitCubes(const CubeSet& set, const Vec3& to_source, std::size_t wavele
     const Eigen::Matrix3d cube_from_array = array_from_cube(cube).transpose();
     const Vec3 own = cube_from_array * to_source;
     if (own.z() < kMinCosine) continue;
-    const EquivalentLight light = is_array ? corner.representative(own) : EquivalentLight{own};
+    const EquivalentLight light = may_share ? corner.representative(own) : EquivalentLight{own};
     const auto [it, is_new] = known.try_emplace(key_of(variant, light.to_source), fields_.size());
     if (is_new) fields_.push_back({variant, light.to_source, {}});
     Lit lit;
@@ -111,23 +112,23 @@ std::vector<double> LitCubes::cosines() const {
   return all;
 }
 
-double LitCubes::beam_mm2() const {
+double LitCubes::mean_of(double (CubeField::*fraction)() const) const {
   double sum = 0.0;
-  for (const Lit& lit : lit_) sum += fields_[lit.field].field.beam_mm2();
-  return sum;
+  double beams_mm2 = 0.0;
+  for (const Lit& lit : lit_) {
+    const CubeField& field = fields_[lit.field].field;
+    sum += field.beam_mm2() * (field.*fraction)();
+    beams_mm2 += field.beam_mm2();
+  }
+  return lit_.empty() ? 0.0 : sum / beams_mm2;
 }
 
 double LitCubes::diffracted_power() const {
-  double sum = 0.0;
-  for (const Lit& lit : lit_) sum += fields_[lit.field].field.beam_mm2() * fields_[lit.field].field.diffracted_power();
-  return lit_.empty() ? 0.0 : sum / beam_mm2();
+  return mean_of(&CubeField::diffracted_power);
 }
 
 double LitCubes::undiffracted_power() const {
-  double sum = 0.0;
-  for (const Lit& lit : lit_)
-    sum += fields_[lit.field].field.beam_mm2() * fields_[lit.field].field.undiffracted_power();
-  return lit_.empty() ? 0.0 : sum / beam_mm2();
+  return mean_of(&CubeField::undiffracted_power);
 }
 
 /// Returns the fields of a cube in several directions, along the axes of the source in the frame of the array.

@@ -2,8 +2,6 @@
 
 // Cubes of an array that are illuminated from one direction, and the sum of their returned light in any direction.
 
-#include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -48,8 +46,6 @@ class LitCubes {
   double undiffracted_power() const;
   /// Returns the cosines of the angles of incidence of all lit cubes.
   std::vector<double> cosines() const;
-  /// Returns the sum of the areas of all incident beams in mm2, perpendicular to their direction.
-  double beam_mm2() const;
 
   /// Returns the Stokes parameters of the light of all cubes without interference, in m2.
   /// \param angles_rad directions as angles to the right and up from the direction to the source
@@ -78,6 +74,8 @@ class LitCubes {
     CubeField field;
   };
   void find_equal_cubes();
+  /// Returns the mean of a fraction of power over the light that is incident on all cubes.
+  double mean_of(double (CubeField::*fraction)() const) const;
   std::vector<DirectionField> fields_of(const Lit& lit, std::span<const geometry::Vec3> directions) const;
 
   raytrace::ReturnFrame frame_;

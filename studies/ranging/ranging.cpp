@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "design/io/design_reader.h"
+#include "design/io/part_reader.h"
 #include "geometry/direction.h"
 #include "raytrace/light/aperture_kernel.h"
 #include "requests/descriptions.h"
@@ -23,7 +24,6 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;
 // Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
 constexpr double kMapMargin = 4.0;
 constexpr double kAnnulusMargin = 1.25;
@@ -98,7 +98,7 @@ class ObservedLight {
   /// Returns the statistics of one component over an annulus. The result is empty if the component is not defined.
   template <class Component>
   std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
-    if (!component(at({Vec2::Zero()}).front())) return std::nullopt;
+    if (!component(by_polarisation({}, sent_))) return std::nullopt;
     return statistics_over(annulus, lit_.detail_rad(), [&](const std::vector<Vec2>& angles_rad) {
       std::vector<double> values;
       for (const ByPolarisation<double>& value : at(angles_rad)) values.push_back(*component(value));
@@ -159,9 +159,9 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
   // An empty value removes a key. The design may give its errors in either unit.
   const std::vector<std::string> overrides = {
-      "surface.dihedral_error_arcmin=",
-      fmt::format("surface.dihedral_error_arcsec=[{}, {}, {}]", shortest(errors_arcsec[0]), shortest(errors_arcsec[1]),
-                  shortest(errors_arcsec[2]))};
+      fmt::format("{}=", design::kDihedralErrorArcmin),
+      fmt::format("{}=[{}, {}, {}]", design::kDihedralErrorArcsec, shortest(errors_arcsec[0]),
+                  shortest(errors_arcsec[1]), shortest(errors_arcsec[2]))};
   return design::with(design, overrides);
 }
 

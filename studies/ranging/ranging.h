@@ -55,9 +55,9 @@ struct RangingPoint {
   /// Range correction of a single cube, and the usual approximation of this correction. Both are empty for arrays.
   std::optional<double> range_correction_mm;
   std::optional<double> usual_range_correction_mm;
-  // The following members are set for arrays.
   std::size_t lit_cubes = 0;
   std::size_t traced_cubes = 0;  ///< number of traces, one for each different cube and direction of light
+  // The following members are set for arrays.
   std::vector<CubeEcho> echoes;  ///< light of each lit cube in the direction of the receiver
   RangeDistribution ranges;
   PulseResponse response;  ///< empty for continuous light

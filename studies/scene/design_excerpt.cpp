@@ -214,11 +214,15 @@ std::vector<ScenePath> DesignExcerpt::typical_paths(const SceneLight& light) con
   const geometry::Rectangle box = geometry::bounding_box(model_.part.outline);
   const geometry::Vec2 window = box.size().cwiseMin(geometry::Vec2::Constant(model_.part.size_mm));
   std::map<EventSequence, std::vector<raytrace::LightPath>> stories;
+  std::size_t count = 0;
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i) {
       // The grid points are shifted off the lines of symmetry, because light on these lines would hit edges.
       const geometry::Vec2 at((i + 0.43) / kGrid - 0.5, (j + 0.47) / kGrid - 0.5);
-      raytrace::LightPath path = this->path(light, centre_mm_ + at.cwiseProduct(window));
+      const geometry::Vec2 entry = centre_mm_ + at.cwiseProduct(window);
+      if (!model_.part.period_mm && !geometry::contains(model_.part.outline, entry, 0.0)) continue;
+      ++count;
+      raytrace::LightPath path = this->path(light, entry);
       stories[story_of(path)].push_back(std::move(path));
     }
   std::vector<std::vector<raytrace::LightPath>> found;
@@ -227,7 +231,7 @@ std::vector<ScenePath> DesignExcerpt::typical_paths(const SceneLight& light) con
   std::vector<ScenePath> chosen;
   for (std::size_t k = 0; k < std::min(found.size(), kPathsEach); ++k)
     chosen.push_back({found[k][found[k].size() / 3], light.incidence_deg, light.azimuth_deg,
-                      static_cast<double>(found[k].size()) / (kGrid * kGrid)});
+                      static_cast<double>(found[k].size()) / static_cast<double>(count)});
   return chosen;
 }
 

@@ -47,12 +47,13 @@ std::string description_of(const raytrace::PathStep& step) {
 }
 
 std::string ending_text(const raytrace::LightPath& path) {
-  const auto reflections = std::count_if(path.steps.begin(), path.steps.end(), [](const raytrace::PathStep& s) {
-    return s.event == PathEvent::total_reflection;
-  });
+  const auto count = [&](PathEvent event) { return std::ranges::count(path.steps, event, &raytrace::PathStep::event); };
+  const auto mirrors = count(PathEvent::reflection);
+  const auto reflections = count(PathEvent::total_reflection) + mirrors;
   const PathEvent last = path.steps.empty() ? PathEvent::ends : path.steps.back().event;
   if (path.is_returned)
-    return fmt::format("comes back after {} total reflection{}", reflections, reflections == 1 ? "" : "s");
+    return fmt::format("comes back after {} {}reflection{}", reflections, mirrors == 0 ? "total " : "",
+                       reflections == 1 ? "" : "s");
   if (last == PathEvent::leaves)
     return fmt::format("leaves through the entrance face at {} deg from the direction to the source",
                        fixed_visible(path.deviation_deg, 1));

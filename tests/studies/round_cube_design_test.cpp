@@ -14,6 +14,7 @@
 #include "geometry/outline/plan_region.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "studies/fabrication/job_maker.h"
+#include "studies/scene/scene.h"
 #include "tests/studies/photometric_requests.h"
 #include "tests/support/refusals.h"
 #include "tests/support/statistics.h"
@@ -53,6 +54,20 @@ TEST(RoundCubeDesign, LengthIsThatOfTheKeysOrTheMinimum) {
   const design::Design raised = read(design("", "[surface]\ndihedral_error_arcmin = [20, -10, 5]\n"));
   EXPECT_GT(raised.part().thickness_mm, 0.01);
   EXPECT_NO_THROW(geometry::build_part(raised.part()));
+}
+
+/// At normal incidence, all light that meets the face of a cube corner comes back. The paths of the three-dimensional
+/// view begin on the face, not in the corners of its bounding box.
+TEST(RoundCubeDesign, PathsOfTheViewBeginOnTheFace) {
+  const DesignScene scene = make_scene(
+      read(design("", "[body]\nmaterial = \"fused-silica\"\n[light]\nwavelength_nm = 532\n")), {SceneLight{}});
+  ASSERT_FALSE(scene.paths.empty());
+  double returned = 0.0;
+  for (const ScenePath& path : scene.paths) {
+    EXPECT_TRUE(path.path.is_returned);
+    returned += path.fraction;
+  }
+  EXPECT_NEAR(returned, 1.0, 1e-12);
 }
 
 TEST(RoundCubeDesign, MountHasTheDiameterOfTheFaceByDefault) {

@@ -31,7 +31,7 @@ retrace_test(studies_tests
   LIBRARIES retrace::validation nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/round_cube_design_test.cpp support/refusals.cpp
-  LIBRARIES retrace::photometry retrace::fabrication_study nlohmann_json::nlohmann_json)
+  LIBRARIES retrace::photometry retrace::fabrication_study retrace::scene nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_sample_test.cpp
   LIBRARIES retrace::photometry retrace::photometry_by_rays retrace::rre)

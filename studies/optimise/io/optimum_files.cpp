@@ -148,9 +148,7 @@ std::string variant_design_text(const Study& study, const Variant& variant, cons
 std::string short_text(const Study& study, const OptimiseRequest& request, const Variant& variant) {
   const auto& weights = request.objective.weights;
   const std::string name = weights.size() == 1 ? weights.front().first : "objective";
-  const double value = weights.size() == 1 && !request.objective.uses_minimum
-                           ? *variant.objective / weights.front().second
-                           : *variant.objective;
+  const double value = weights.size() == 1 ? *variant.objective / weights.front().second : *variant.objective;
   std::string text = fmt::format("{} = {:.5g}", name, value);
   for (std::size_t k = 0; k < variant.values.size(); ++k) {
     const double* const number = std::get_if<double>(&variant.values[k].shown);

@@ -95,17 +95,9 @@ void take_process(const Document& document, MachiningProcess& machining) {
   if (machining.process.empty()) return;
   const fabrication::Process process =
       fabrication::load_process(machining.process, document.where("machining.process"));
-  const auto take = [&](const char* key, double& value, double of_process) {
-    if (!document.has(std::string("machining.") + key)) value = of_process;
-  };
-  take("clearance_um", machining.clearance_um, process.clearance_mm * kUmPerMm);
-  take("roughing_depth_um", machining.roughing_depth_um, process.roughing_depth_um);
-  take("finishing_depth_um", machining.finishing_depth_um, process.finishing_depth_um);
-  take("plough_length_um", machining.plough_length_um, process.plough_length_mm * kUmPerMm);
-  take("roughing_feed_mm_per_min", machining.roughing_feed_mm_per_min, process.roughing_feed_mm_per_min);
-  take("finishing_feed_mm_per_min", machining.finishing_feed_mm_per_min, process.finishing_feed_mm_per_min);
-  take("traverse_feed_mm_per_min", machining.traverse_feed_mm_per_min, process.retract_feed_mm_per_min);
-  take("dwell_s", machining.dwell_s, process.dwell_s);
+  for (const ProcessValue& value : kProcessValues)
+    if (!document.has(std::string("machining.") + value.key))
+      machining.*value.machining = value.factor * (process.*value.process);
   const bool finishes = machining.strategy != fabrication::Strategy::unidirectional;
   if (finishes && !document.has("machining.finishing_cuts")) machining.finishing_cuts = process.finishing_cuts;
 }

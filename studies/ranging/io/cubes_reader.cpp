@@ -29,10 +29,12 @@ constexpr NumberRange kRotation{.low = -360.0, .high = 360.0};
 constexpr NumberRange kCount{.low = 1.0, .high = static_cast<double>(kMaxCubes)};
 constexpr NumberRange kErrorArcsec{.low = -3600.0, .high = 3600.0};
 
+constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
+
 /// Entry [[cube]] of a file.
 struct CubeEntry {
   std::array<double, 3> position_mm{};
-  std::array<double, 3> axis = {0.0, 0.0, 1.0};
+  std::array<double, 3> axis = kUp;
   double clocking_deg = 0.0;
   std::optional<std::array<double, 3>> dihedral_error_arcsec;
 };
@@ -43,8 +45,6 @@ struct CubesFile {
   std::vector<CubeGrid> grids;
   std::vector<CubeEntry> cubes;
 };
-
-constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
 
 constexpr schema::Row kRingRows[] = {
     {"radius_mm", Number{kRadius}, kRequired, "Distance of the entrance faces from the centre of the sphere.",

@@ -17,10 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kArcsecPerRad = 3600.0 / kRadPerDeg;
 constexpr double kMicroradPerRad = 1e6;
 constexpr double kM2PerMillion = 1e6;
-constexpr double kPsPerMm = 2.0 / 0.299792458;
+constexpr double kPsPerMm = 2.0 / kLightMmPerPs;
 
 Json statistics_json(const AnnulusStatistics& s) {
   return {{"mean_m2", s.mean}, {"min_m2", s.min}, {"max_m2", s.max}};
@@ -52,7 +51,7 @@ Json shots_json(const std::vector<Shot>& shots) {
 }
 
 Json ranges_json(const RangingPoint& p) {
-  if (!(p.ranges.cross_section_m2 > 0.0)) return Json::object({{"lit_cubes", p.lit_cubes}});
+  if (!p.ranges.has_light()) return Json::object({{"lit_cubes", p.lit_cubes}});
   return {{"lit_cubes", p.lit_cubes},
           {"traced_cubes", p.traced_cubes},
           {"cross_section_m2", p.ranges.cross_section_m2},
@@ -156,7 +155,8 @@ std::string ranging_csv(const RangingResult& result) {
     const auto of = [&](double AnnulusStatistics::*member) {
       return p.annulus ? std::optional(p.annulus->total.*member) : std::nullopt;
     };
-    const auto mean = [&](const auto& part) { return p.annulus && part ? std::optional(part->mean) : std::nullopt; };
+    const ByPolarisation<AnnulusStatistics> annulus = p.annulus.value_or(ByPolarisation<AnnulusStatistics>{});
+    const auto mean = [](const auto& part) { return part ? std::optional(part->mean) : std::nullopt; };
     csv.add(p.index.wavelength_nm);
     csv.add(p.incidence_deg);
     csv.add(p.azimuth_deg);
@@ -167,14 +167,13 @@ std::string ranging_csv(const RangingResult& result) {
     csv.add(of(&AnnulusStatistics::mean));
     csv.add(of(&AnnulusStatistics::min));
     csv.add(of(&AnnulusStatistics::max));
-    csv.add(p.annulus ? mean(p.annulus->parallel) : std::nullopt);
-    csv.add(p.annulus ? mean(p.annulus->crossed) : std::nullopt);
+    csv.add(mean(annulus.parallel));
+    csv.add(mean(annulus.crossed));
     csv.add(p.range_correction_mm);
     csv.add(p.usual_range_correction_mm);
     csv.add(p.lit_cubes);
-    const bool has_ranges = result.settings.is_array() && p.ranges.cross_section_m2 > 0.0;
-    csv.add(has_ranges ? std::optional(p.ranges.centroid_mm) : std::nullopt);
-    csv.add(has_ranges ? std::optional(p.ranges.rms_mm) : std::nullopt);
+    csv.add(p.ranges.has_light() ? std::optional(p.ranges.centroid_mm) : std::nullopt);
+    csv.add(p.ranges.has_light() ? std::optional(p.ranges.rms_mm) : std::nullopt);
     csv.end_row();
   }
   return csv.text();
@@ -234,9 +233,9 @@ std::string ranging_table(const RangingResult& result) {
       return of_annulus ? millions(of_annulus->mean) : share_text(of_centre);
     };
     const ByPolarisation<AnnulusStatistics> annulus = p.annulus.value_or(ByPolarisation<AnnulusStatistics>{});
-    const std::string range = !is_array                         ? fixed(*p.range_correction_mm, 4)
-                              : p.ranges.cross_section_m2 > 0.0 ? fixed(p.ranges.centroid_mm, 4)
-                                                                : std::string("-");
+    const std::string range = !is_array              ? fixed(*p.range_correction_mm, 4)
+                              : p.ranges.has_light() ? fixed(p.ranges.centroid_mm, 4)
+                                                     : std::string("-");
     text += fmt::format("{:>9} {:>9} {:>7} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11} {:>14}\n",
                         shortest(p.index.wavelength_nm), shortest(p.incidence_deg), shortest(p.azimuth_deg),
                         millions(p.centre.total), statistic(&AnnulusStatistics::mean),

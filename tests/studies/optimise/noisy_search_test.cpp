@@ -14,7 +14,7 @@ namespace retrace::testing::noisy_search_test {
 namespace {
 
 using studies::ErrorLevel, studies::Estimate, studies::NoisyOptimum, studies::NoisySearchSettings, studies::Observation,
-    studies::SearchPoint, studies::SearchTrial;
+    studies::SearchPoint;
 using Position = std::vector<double>;
 
 /// Problem with a known maximum.
@@ -55,14 +55,14 @@ class Noisy : public studies::SearchedFunction {
   Noisy(const Problem& problem, double sigma, double common, std::uint64_t seed)
       : problem_(problem), sigma_(sigma), common_(common), seed_(seed) {}
 
-  std::vector<Observation> observe(const std::vector<SearchTrial>& trials) override {
+  std::vector<Observation> observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) override {
     std::vector<Observation> seen;
-    for (const SearchTrial& trial : trials) {
+    for (const SearchPoint& point : points) {
       Observation one;
-      const double sigma = sigma_ * trial.level.scale;
+      const double sigma = sigma_ * level.scale;
       one.objective =
-          Estimate{problem_.value(trial.at.combination, trial.at.fractions) + sigma * error_of(trial), sigma};
-      if (problem_.excess) one.excess.push_back({problem_.excess(trial.at.fractions), 0.0});
+          Estimate{problem_.value(point.combination, point.fractions) + sigma * error_of(point, level), sigma};
+      if (problem_.excess) one.excess.push_back({problem_.excess(point.fractions), 0.0});
       seen.push_back(one);
     }
     return seen;
@@ -96,13 +96,13 @@ class Noisy : public studies::SearchedFunction {
   }
 
  private:
-  /// Returns the random error of a trial, in units of its standard error. A fraction of this error is common to all
-  /// trials and is a smooth function of the position.
-  double error_of(const SearchTrial& trial) const {
-    const std::uint64_t stream = seed_ * 1000 + trial.level.replicate * 10 + (trial.level.scale > 3.0 ? 1U : 0U);
+  /// Returns the random error of a point, in units of its standard error. A fraction of this error is common to all
+  /// points and is a smooth function of the position.
+  double error_of(const SearchPoint& point, const ErrorLevel& level) const {
+    const std::uint64_t stream = seed_ * 1000 + level.replicate * 10 + (level.scale > 3.0 ? 1U : 0U);
     double smooth = normal(stream, 1);
-    std::uint64_t own = trial.at.combination + 17;
-    for (const double x : trial.at.fractions) {
+    std::uint64_t own = point.combination + 17;
+    for (const double x : point.fractions) {
       smooth = (smooth + 0.3 * std::sin(2.0 * x + normal(stream, 3))) / 1.02;
       own = own * 0x100000001b3U ^ static_cast<std::uint64_t>(x * 1e15);
     }
