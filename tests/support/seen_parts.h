@@ -92,7 +92,7 @@ class CutSurface {
       if (k % 3 == 0)
         most.distance_nm = std::max(most.distance_nm, 1e6 * std::abs(left[k]));
       else
-        most.tilt_arcsec = std::max(most.tilt_arcsec, studies::kArcsecPerRad * 1e6 / kTiltNm * std::abs(left[k]));
+        most.tilt_arcsec = std::max(most.tilt_arcsec, kArcsecPerRad * 1e6 / kTiltNm * std::abs(left[k]));
     return most;
   }
 
@@ -100,7 +100,7 @@ class CutSurface {
   double apex_error_arcsec() const {
     double most = 0.0;
     for (std::size_t k = 0; k < figures_.size(); k += 2)
-      most = std::max(most, studies::kArcsecPerRad * std::abs(figures_[k].slope_up + figures_[k + 1].slope_up));
+      most = std::max(most, kArcsecPerRad * std::abs(figures_[k].slope_up + figures_[k + 1].slope_up));
     return most;
   }
 
@@ -175,9 +175,9 @@ inline double measured_of(const fabrication::Cavity& groove, const fabrication::
                                           figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
   switch (what) {
     case studies::FacetQuantity::tilt_up:
-      return -studies::kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
+      return -kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
     case studies::FacetQuantity::tilt_along:
-      return -studies::kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
+      return -kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
     default: return 1e6 * normal.dot(point - fabrication::facet_centre(groove, facet)) / normal.dot(design.normal);
   }
 }
