@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 27d0fe706772f47620c91d2da1b6f2c374abdd7ea6a45a4414ed59437df5fa22 */
+/* made by tools/live_page; engine.wasm.gz 0be837b5a543925ebdd4ad8c2c9ce841d7d4292f664938cdb68746ab7b6434be */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;
