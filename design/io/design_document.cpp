@@ -73,7 +73,7 @@ const geometry::PlanRegion* outline_of(const PartSpec& part) {
   return cube != nullptr ? cube->outline.get() : part.array.outline.get();
 }
 
-void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm) {
+void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm, bool is_hollow) {
   keys.set_word("kind", "round_icc");
   keys.set("diameter_mm", cube.diameter_mm);
   keys.set("length_mm", geometry::element_depth_mm(cube) + thickness_mm);
@@ -81,9 +81,10 @@ void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm) {
   keys.set_positive("chamfer_mm", cube.chamfer_mm);
   keys.set_positive("recess_mm", cube.recess_mm);
   keys.set_positive("mount_diameter_mm", cube.mount_diameter_mm);
+  if (is_hollow) keys.set("hollow", true);
 }
 
-void set_element(Document& document, const PartSpec& part) {
+void set_element(Document& document, const PartSpec& part, bool is_hollow) {
   Keys keys(document, "element");
   std::visit(
       Overloaded{[&](const RtpElement& prism) {
@@ -94,7 +95,7 @@ void set_element(Document& document, const PartSpec& part) {
                  },
                  [&](const HexagonalCube& cube) { set_cube(keys, "hexagonal_icc", cube.aperture_mm, cube.cant); },
                  [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); },
-                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm); }},
+                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm, is_hollow); }},
       part.element);
 }
 
@@ -238,7 +239,7 @@ void set_zones(Document& document, const ZonedPart& part) {
 /// Sets the tables that describe the shape.
 void set_shape(Document& document, const Design& design) {
   std::visit(Overloaded{[&](const ElementArray& array) {
-                          set_element(document, array.part);
+                          set_element(document, array.part, design.substance.is_hollow);
                           set_array(document, array);
                           if (array.part.substrate) set_substrate(document, *array.part.substrate);
                           if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
@@ -251,7 +252,7 @@ void set_shape(Document& document, const Design& design) {
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
                         [&](const ZonedPart& part) {
-                          set_element(document, part.base);
+                          set_element(document, part.base, false);
                           set_array(document, {part.base, {}, {}, part.outline});
                           set_zones(document, part);
                         },
@@ -313,16 +314,20 @@ bool is_below_entrance(const Design& design) {
          std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape);
 }
 
+void set_material(Keys& keys, const Substance& substance) {
+  keys.set_word("material", substance.material);
+  if (substance.catalogue) keys.set_word("catalogue", substance.catalogue->name);
+  if (substance.refractive_index) keys.set("refractive_index", *substance.refractive_index);
+  if (substance.temperature_c) keys.set("temperature_c", *substance.temperature_c);
+  if (const Value absorption = absorption_value(substance.absorption_per_mm); absorption.index() != 0)
+    keys.set("absorption_per_mm", absorption);
+}
+
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
   const bool is_round = design.elements() != nullptr && std::holds_alternative<RoundCube>(design.part().element);
   if (!is_below_entrance(design) && !is_round) keys.set_positive("thickness_mm", design.thickness_mm());
-  keys.set_word("material", design.substance.material);
-  if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);
-  if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
-  if (design.substance.temperature_c) keys.set("temperature_c", *design.substance.temperature_c);
-  if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
-    keys.set("absorption_per_mm", absorption);
+  if (!design.substance.is_hollow) set_material(keys, design.substance);
   if (design.surface.coating.has_only_aluminium_on_facets()) keys.set_word("facet_coating", "aluminium");
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }

@@ -270,6 +270,7 @@ Design resolved(std::shared_ptr<const Document> given) {
                       read_absorption(document, "body.absorption_per_mm"),
                       document.number("body.back_index")};
   if (document.has("element.hollow") && document.flag("element.hollow")) {
+    design.substance.is_hollow = true;
     design.substance.material = "air";
     design.substance.refractive_index = 1.0;
     design.substance.absorption_per_mm = 0.0;

@@ -35,6 +35,26 @@ std::size_t count_of(double periods) {
   return static_cast<std::size_t>(std::ceil(periods));
 }
 
+/// Numbers of rings and of points along each ring.
+struct RingCounts {
+  std::size_t rings = 1;
+  std::size_t around = 1;
+};
+
+/// Returns the numbers of integration points over an annulus.
+RingCounts integration_counts(const Annulus& annulus, double detail_rad) {
+  const double width = annulus.outer_rad - annulus.inner_rad;
+  return {width > 0.0 ? count_of(kPointsPerDetail * width / detail_rad + kMorePoints) : 1,
+          count_of(kPointsPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints)};
+}
+
+/// Returns the numbers of samples over an annulus among which its extremes are searched.
+RingCounts search_counts(const Annulus& annulus, double detail_rad) {
+  const double width = annulus.outer_rad - annulus.inner_rad;
+  return {width > 0.0 ? 1 + count_of(kSearchPerDetail * width / detail_rad) : 1,
+          count_of(kSearchPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints)};
+}
+
 /// Point in polar coordinates.
 struct PolarPoint {
   double radius = 0.0;
@@ -79,9 +99,8 @@ Annulus aberration_of_orbit(double height_km, double elevation_deg) {
 std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_rad) {
   const double width = annulus.outer_rad - annulus.inner_rad;
   if (annulus.outer_rad == 0.0) return {{Vec2::Zero(), 1.0}};
-  const std::size_t rings = width > 0.0 ? count_of(kPointsPerDetail * width / detail_rad + kMorePoints) : 1;
+  const auto [rings, around] = integration_counts(annulus, detail_rad);
   const raytrace::GaussRule rule = rings > 1 ? raytrace::gauss_legendre(rings) : raytrace::GaussRule{{0.5}, {1.0}};
-  const std::size_t around = count_of(kPointsPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints);
   std::vector<AnnulusPoint> points;
   double sum = 0.0;
   for (std::size_t ring = 0; ring < rings; ++ring) {
@@ -96,6 +115,14 @@ std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_r
   return points;
 }
 
+double evaluations_over(const Annulus& annulus, double detail_rad) {
+  if (annulus.outer_rad == 0.0) return 1.0;
+  const RingCounts mean = integration_counts(annulus, detail_rad);
+  const RingCounts search = search_counts(annulus, detail_rad);
+  return static_cast<double>(mean.rings) * static_cast<double>(mean.around) +
+         static_cast<double>(search.rings) * static_cast<double>(search.around);
+}
+
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values) {
   AnnulusStatistics statistics;
   const std::vector<AnnulusPoint> points = annulus_points(annulus, detail_rad);
@@ -105,8 +132,7 @@ AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, con
   for (std::size_t k = 0; k < points.size(); ++k) statistics.mean += points[k].weight * of_points[k];
   if (annulus.outer_rad == 0.0) return {statistics.mean, statistics.mean, statistics.mean};
   const double width = annulus.outer_rad - annulus.inner_rad;
-  const std::size_t rings = width > 0.0 ? 1 + count_of(kSearchPerDetail * width / detail_rad) : 1;
-  const std::size_t around = count_of(kSearchPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints);
+  const auto [rings, around] = search_counts(annulus, detail_rad);
   std::vector<PolarPoint> searched;
   angles.clear();
   for (std::size_t ring = 0; ring < rings; ++ring)

@@ -41,6 +41,8 @@ struct AnnulusStatistics {
 };
 /// Function that returns one value for each direction, given by angles to the right and up in rad.
 using DirectionValues = std::function<std::vector<double>(const std::vector<geometry::Vec2>& angles_rad)>;
+/// Returns the number of directions that statistics_over() evaluates before its local search.
+double evaluations_over(const Annulus& annulus, double detail_rad);
 /// Computes the mean and the extremes of a function over an annulus. The extremes are first found among samples and
 /// then refined by a local search.
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values);

@@ -85,6 +85,10 @@ void check_entrance(const design::Design& design, SolidKind what, const SolidReq
 
 void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
+  if (solid.design.substance.is_hollow)
+    solid.warnings.push_back(
+        {"solid_of_air",
+         name + ": the design is a hollow cube corner, so that the solid is the air in front of its mirrors"});
   if (!solid.is_manifold)
     solid.warnings.push_back(
         {"touching_edges", name + ": the part touches itself along edges; some programs treat it as an open surface"});

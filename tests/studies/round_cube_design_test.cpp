@@ -107,6 +107,7 @@ TEST(RoundCubeDesign, DocumentsDescribeTheSamePart) {
     EXPECT_EQ(a.clear_face.size(), b.clear_face.size()) << text;
     EXPECT_EQ(a.mount.has_value(), b.mount.has_value()) << text;
     EXPECT_EQ(first.substance.refractive_index, second.substance.refractive_index) << text;
+    EXPECT_EQ(first.substance.is_hollow, second.substance.is_hollow) << text;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "core/named_file.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
+#include "core/text.h"
 
 namespace retrace::studies {
 namespace {
@@ -202,7 +203,7 @@ std::vector<ArrayCube> parse_cube_table(std::string_view text, const std::string
 std::vector<ArrayCube> read_cubes(const std::filesystem::path& file) {
   return read_named(Field{"cubes"}, [&] {
     const std::string text = read_file(file, kMaxCubeBytes);
-    return file.extension() == ".csv" ? parse_cube_table(text, file.string()) : parse_cubes(text, file.string());
+    return ending_of(file) == ".csv" ? parse_cube_table(text, file.string()) : parse_cubes(text, file.string());
   });
 }
 

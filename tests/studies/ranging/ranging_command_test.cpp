@@ -64,6 +64,14 @@ TEST(RangingCommand, ArraysHaveCubesPulsesAndShots) {
   EXPECT_NE(again["points"][0]["shots"], json["points"][0]["shots"]);
 }
 
+TEST(RangingCommand, EndingsOfFilesHaveNoCase) {
+  const TemporaryFolder folder;
+  write_inputs(folder);
+  folder.write("CUBES.CSV", "x_mm,y_mm,z_mm,axis_x,axis_y,axis_z\n0,0,0,0,0,1\n50,0,0,0,0,1\n");
+  const Json json = retrace_json(folder, {"ranging", "cube.toml", "--cubes", "CUBES.CSV", "--map-points", "3"});
+  EXPECT_EQ(json["points"][0]["ranges"]["lit_cubes"], 2);
+}
+
 TEST(RangingCommand, CubesOnTheFarSideAreDark) {
   const TemporaryFolder folder;
   write_inputs(folder);
@@ -105,6 +113,8 @@ TEST(RangingCommand, WrongOptionsAreRefused) {
   EXPECT_EQ(with("--polarisation-deg", "10"), "--polarisation-deg");
   EXPECT_EQ(with("--aberration-arcsec", "3,2"), "--aberration-arcsec");
   EXPECT_EQ(with("--aberration-arcsec", "3"), "--aberration-arcsec");
+  EXPECT_EQ(with("--aberration-arcsec", "1,36000"), "--aberration-arcsec");
+  EXPECT_EQ(with("--source-arcsec", "36000"), "--map-points");
   EXPECT_EQ(with("--orbit-km", "0"), "--orbit-km");
   EXPECT_EQ(with("--elevation-deg", "10"), "--elevation-deg");
   EXPECT_EQ(with("--window", "0"), "--window");
