@@ -261,7 +261,7 @@ struct Substance {
   std::optional<double> temperature_c;  ///< temperature of part and air; if empty, the temperature of the material data
   Absorption absorption_per_mm;
   double back_index = 1.0;  ///< refractive index of the medium behind the facets, relative to air; 1..3
-  bool is_hollow = false;   ///< the body is the air in front of three mirrors; the material and the index are those of air
+  bool is_hollow = false;   ///< true: the body is the air in front of three mirrors, and the members above describe air
 
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
