@@ -61,14 +61,12 @@ constexpr Row kElementRows[] = {
          "more if angle errors or a cant raise the facets"},
      "Length from the apex to the face.", kRoundOnly},
     {"edge_length_mm", kSize, Computed{"sqrt(3) times the length"},
-     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, before it was made "
-     "round. "
-     "It is sqrt(3) times the length and replaces `length_mm`.",
+     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, without the cut by the "
+     "circular outline. It is sqrt(3) times the length and replaces `length_mm`.",
      kEdgeLengthOnly},
     {"chamfer_mm", kGap, 0.0,
      "Width of the chamfer at the rim of the face, in plan. Light that meets the chamfer from outside or from inside "
-     "is "
-     "stopped.",
+     "is stopped.",
      kRoundOnly},
     {"recess_mm", kGap, 0.0,
      "Depth of the face below the edge of its mount. The edge stops light on its way to the face and on its way back.",

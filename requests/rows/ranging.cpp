@@ -54,7 +54,7 @@ constexpr Row kRangingRows[] = {
      {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth"}},
     {"polarisation",
      Word{kSentPolarisations},
-     "polarisation of the light that is sent: that of the design, or unpolarised, linear, right or left (circular)",
+     "polarisation of the transmitted light: as in the design, or unpolarised, linear, right or left (circular)",
      access<&RangingRequest::polarisation>,
      {.value = "STATE"}},
     {"polarisation_deg",

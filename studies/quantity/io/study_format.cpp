@@ -305,10 +305,12 @@ constexpr Row kOptimiseRows[] = {
     {"scan", Integer{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
      "designs are equally spaced from end to end of its interval. For several continuous parameters, they are the "
-     "corners of the intervals and Sobol points. Sizes of prisms are moved to the nearest sizes that divide the part."},
+     "corners of the intervals and Sobol points. Sizes of prisms are changed to the nearest sizes with which the part "
+     "contains whole prisms only."},
     {"rounding", Word{kRoundings}, "drawing",
-     "Rounding of continuous parameters in the result. `\"drawing\"`: the roundest values whose objective cannot be "
-     "distinguished from the best one, preferably sizes that divide the part. `\"none\"`: no rounding."},
+     "Rounding of continuous parameters in the result. `\"drawing\"`: the values with the fewest digits whose "
+     "objective cannot be distinguished from the best one, preferably sizes with which the part contains whole "
+     "elements only. `\"none\"`: no rounding."},
     {"bands_of", Texts{}, kNone,
      "Keys of the design, or keys of parameters of the study, for which tolerance bands are computed."},
     {"band_loss_percent", Number{{.low = 0.0, .low_included = false, .high = 100.0}}, 1.0,
