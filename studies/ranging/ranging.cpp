@@ -24,15 +24,17 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
+// Minimum half width of the map. It is the deflection of the beams plus this number of angular widths of the finest
+// details, and at least the outer radius of the annulus times the second constant.
 constexpr double kMapMargin = 4.0;
 constexpr double kAnnulusMargin = 1.25;
-// Number of rings, and number of points per ring, for the cross section as a function of the angle from the source.
+// Number of rings around the direction to the source, and number of points per ring. The statistics of the cross
+// section are computed on each ring.
 constexpr std::size_t kRings = 60;
 constexpr std::size_t kPointsPerRing = 72;
-// Maximum power that is not diffracted and causes no warning, as a fraction of the incident power.
+// A warning is issued if more than this fraction of the incident power is in beams whose diffraction is not computed.
 constexpr double kMaxUndiffractedPower = 1e-3;
-// Degree of polarisation below which light counts as unpolarised.
+// Light with a smaller degree of polarisation counts as unpolarised.
 constexpr double kMinPolarisation = 1e-9;
 
 Stokes sent_stokes(const RangingRequest& request, const design::Design& design) {
@@ -56,7 +58,8 @@ Vec2 observation_of(const RangingRequest& request, const std::optional<Annulus>&
   return annulus ? Vec2(0.5 * (annulus->inner_rad + annulus->outer_rad), 0.0) : Vec2(Vec2::Zero());
 }
 
-/// Divides returned light into light with the transmitted polarisation and light with the orthogonal polarisation.
+/// Splits the returned light into its component with the transmitted polarisation and its component with the orthogonal
+/// polarisation.
 ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sent) {
   ByPolarisation<double> result{returned.i};
   const double degree = std::hypot(sent.q, sent.u, sent.v);
@@ -67,7 +70,8 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
-/// Returned light of the illuminated cubes in any direction, averaged over the discs of source and receiver.
+/// Light that the illuminated cubes return in any direction, averaged over the angular extent of the source and the
+/// receiver.
 class ObservedLight {
  public:
   ObservedLight(const LitCubes& lit, const RangingSettings& settings, const Cancellation* cancel)
@@ -95,7 +99,8 @@ class ObservedLight {
     return result;
   }
 
-  /// Returns the statistics of one component over an annulus. The result is empty if the component is not defined.
+  /// Returns the statistics of one polarisation component over an annulus. Returns nothing if the component is not
+  /// defined, because the transmitted light is unpolarised.
   template <class Component>
   std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
     if (!component(by_polarisation({}, sent_))) return std::nullopt;
@@ -155,9 +160,9 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
   return map;
 }
 
-/// Returns the design after replacing the errors of its dihedral angles.
+/// Returns a copy of a design with other errors of the dihedral angles.
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
-  // An empty value removes a key. The design may give its errors in either unit.
+  // An empty value removes a key. Both keys are removed, because the design may contain either of them.
   const std::vector<std::string> overrides = {
       fmt::format("{}=", design::kDihedralErrorArcmin),
       fmt::format("{}=[{}, {}, {}]", design::kDihedralErrorArcsec, shortest(errors_arcsec[0]),
@@ -174,7 +179,7 @@ std::vector<double> sorted_wavelengths(const RangingRequest& request, const desi
   return wavelengths;
 }
 
-/// Returns the cubes of a study. Without an array, the result is a single cube whose frame is the part frame.
+/// Returns the cubes of a study. Without an array, the result contains a single cube in the part frame.
 CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
   const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
   CubeSet set;
@@ -229,7 +234,7 @@ struct RangingStudy::Prepared {
   RangingSettings settings;
   CubeSet set;
 
-  /// Computes one point. Adds the map to `result` for the first point.
+  /// Computes one point. For the first point, also stores the map in `result`.
   RangingPoint point_of(std::size_t wavelength, double incidence_deg, double azimuth_deg, RangingResult& result,
                         const Cancellation* cancel) const {
     const CubeCorner& corner = set.variants.front();
@@ -330,7 +335,7 @@ RangingResult RangingStudy::run(Progress* progress, const Cancellation* cancel) 
         result.points.push_back(std::move(point));
         if (progress != nullptr) progress->at(static_cast<double>(result.points.size()) / static_cast<double>(total));
       }
-  if (result.points.empty()) result.map = {};  // the map of an interrupted point is incomplete
+  if (result.points.empty()) result.map = {};  // the map is incomplete, because its point was interrupted
   result.complete = result.points.size() == total;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
