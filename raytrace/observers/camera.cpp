@@ -39,8 +39,8 @@ constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
 // Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Pass number of the training pass of a PixelGuide. The training passes of PixelPoints have the next smaller numbers.
-// The passes of a picture are numbered from 0.
+// Number of the PixelGuide's training pass. The two training passes for PixelPoints have the preceding numbers. The
+// passes of a picture are numbered from 0, so these numbers do not occur there.
 constexpr std::uint32_t kTrainingPass = 0xffffffff;
 constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
@@ -137,7 +137,7 @@ struct CameraTracer::Impl {
   bool has_learnt_all = false;      ///< true if the guide has been trained with the training pass and with pass 0
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
   std::vector<float> levels;        ///< indexed by pixel: typical luminance, see GuideTraining::level_of()
-  PixelPoints points;               ///< number of points of each pixel in a pass
+  PixelPoints points;               ///< number of paths through each pixel in one pass
   bool has_chosen_points = false;   ///< true if training passes have determined `points`
 };
 
@@ -279,15 +279,16 @@ struct CameraTracer::Impl::Block {
     return true;
   }
 
-  /// Returns the power of light that the walker does not trace further because of shells. This light was reflected by a
-  /// shell, or it left the part and missed a shell.
+  /// Returns the power of light whose tracing ends at shells: light that a shell reflects, and light that leaves the
+  /// part and misses a shell.
   double stopped_at_shells() const {
     return tally.other[Account::shell_reflected] + tally.other[Account::returned_elsewhere];
   }
   /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
-  std::vector<CameraSample> paths;  ///< samples of all paths; Impl::points contains the number for each pixel
+  /// samples of all paths, grouped by pixel; Impl::points contains the number of paths through each pixel
+  std::vector<CameraSample> paths;
   Tally tally{1};
   SensorAccumulator accumulator;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
@@ -423,7 +424,7 @@ void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block
 
 /// Traces one pass over the picture.
 /// \param training receives training samples for the guide; may be null
-/// \param moments receives the luminances of all paths, indexed by pixel; may be null
+/// \param moments receives sums over the luminances of all paths, indexed by pixel; may be null
 std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
                                                     GuideTraining* training, std::vector<PixelMoments>* moments) const {
   const std::size_t columns = scene.view.columns;
@@ -501,8 +502,8 @@ std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t numb
   return result;
 }
 
-/// Traces training passes and determines the number of points of each pixel from the noise of these passes. Returns
-/// false if tracing was cancelled.
+/// Traces training passes and assigns more points per pass to pixels that are noisy in these passes. Returns false if
+/// tracing was cancelled.
 bool CameraTracer::Impl::choose_points(const Cancellation* cancel) {
   std::vector<PixelMoments> moments(scene.view.columns * scene.view.rows);
   for (std::uint32_t k = 1; k <= kTrainingPassesOfPoints; ++k)
