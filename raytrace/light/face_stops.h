@@ -25,7 +25,7 @@ class FaceStops {
   /// Returns true if the line through `position` along `direction` passes the opening of the mount.
   bool passes_mount(const Vec3& position, const Vec3& direction) const;
   /// Returns true if light along `direction` passes the mount and reaches the point `on_face` of the plane entrance
-  /// face, which must not be on the chamfer.
+  /// face. The point must not be on the chamfer.
   bool reaches(const Vec3& on_face, const Vec3& direction) const {
     return is_clear(on_face.head<2>()) && passes_mount(on_face, direction);
   }

@@ -310,8 +310,8 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   if (!displacement) return nullptr;
   const double denser = displacement->determinant();
   if (denser > kMaxConcentration || denser < 1.0 / kMaxConcentration) return nullptr;
-  // The tracer does not use the points at which light enters the curved surface, but the points at which this light
-  // would enter the tangent plane. For a convex surface, the latter cover a smaller area.
+  // For each ray that enters through the curved surface, the tracer needs the point at which it would enter the tangent
+  // plane. For a convex surface, these points cover a smaller area.
   const Bounds model_bounds = bounds.before(*displacement);
   const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
   scene->is_lit = portion.size() >= 3;
@@ -392,8 +392,8 @@ Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, 
   const Eigen::Matrix2d gradients = entry.path_per_height * slope.transpose() * scene.sag.curvature_per_mm();
   of.second = gradients * slope;
   of.first = gradients * (beam.entry_from_exit.translation() + beam.centre_mm);
-  // The path is computed for a fixed point and not for the centre of the beam's polygon, so that the phases of all
-  // fragments of a wave are consistent.
+  // The path is computed for a fixed point and not for the centre of the beam's polygon. The phases of all fragments of
+  // a wave are therefore consistent.
   const Vec2 exit = -beam.centre_mm;
   of.path_mm = (beam.phase_mm + beam.direction.head<2>().dot(exit) +
                 scene.to_source.head<2>().dot(beam.entry_from_exit * exit)) /

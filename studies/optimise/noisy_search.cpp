@@ -55,8 +55,8 @@ class NoisySearch {
     std::vector<SearchPoint> all;
     for (const auto& points : scan) all.insert(all.end(), points.begin(), points.end());
     observe(all, {settings_.scan_scale, 0});
-    // There is one start for each combination of discrete values: the best scan point of this combination. refine()
-    // first observes again all scan points whose difference from the start is within the errors.
+    // Each combination of discrete values has one start, which is its best scan point. refine() first observes again
+    // all scan points of the combination whose difference from the start is within the errors.
     for (const SearchPoint& start : starts(scan)) refine(start);
     NoisyOptimum optimum;
     std::optional<SearchPoint> best = compare(finalists());

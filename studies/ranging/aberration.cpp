@@ -14,15 +14,15 @@ namespace {
 
 using geometry::Vec2;
 
-// Gravitational constant times the mass of the Earth, and equatorial radius of the Earth (IERS Conventions 2010, Table
-// 1.1).
+// Gravitational constant times the mass of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthKm3PerS2 = 398600.4418;
+// Equatorial radius of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthRadiusKm = 6378.1366;
 constexpr double kLightKmPerS = 1e6 * kLightMmPerPs;
 
-// Number of integration points per angular width of the finest details, and number of points that are added to the
-// product.
+// Number of integration points per angular width of the finest details.
 constexpr double kPointsPerDetail = 3.0;
+// Number of integration points that are added, so that small annuli also have enough points.
 constexpr double kMorePoints = 6.0;
 // Number of sample rings, and of samples along each ring, per angular width of the finest details. The samples are the
 // starts of the search for extremes.

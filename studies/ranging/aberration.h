@@ -19,8 +19,8 @@ struct Annulus {
   double outer_rad = 0.0;
 };
 
-/// Returns the smallest and the largest velocity aberration 2 v / c of a satellite on a circular orbit, over all
-/// stations that see it above a minimum elevation. The rotation of the Earth is neglected.
+/// Returns the smallest and the largest velocity aberration 2 v / c of a satellite on a circular orbit. All stations
+/// that see the satellite above a minimum elevation are considered. The rotation of the Earth is neglected.
 /// \param height_km height of the orbit above the equator
 /// \param elevation_deg minimum elevation of the satellite above the horizon of the station
 Annulus aberration_of_orbit(double height_km, double elevation_deg);

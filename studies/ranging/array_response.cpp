@@ -17,9 +17,9 @@ namespace {
 
 // One-way range that corresponds to 1 ps of round-trip time, which is half of the distance that light travels in 1 ps.
 constexpr double kOneWayMmPerPs = 0.5 * kLightMmPerPs;
-// Margin of the response in front of the first cube and behind the last cube, and distance between its points. Both are
-// multiples of the pulse's standard deviation.
+// Margin of the response in front of the first cube and behind the last cube, in standard deviations of the pulse.
 constexpr double kResponseMargin = 5.0;
+// Distance between neighbouring points of the response, in standard deviations of the pulse.
 constexpr double kResponseStep = 0.2;
 // Maximum number of points of a response. It limits the size of the result for short pulses.
 constexpr double kMaxResponsePoints = 4000.0;

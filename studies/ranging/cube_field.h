@@ -46,8 +46,8 @@ class CubeField {
   double deflection_rad(const geometry::Vec3& to_source) const;
   /// Returns the power of all returned beams whose diffraction is included, as a fraction of the incident power.
   double diffracted_power() const { return diffracted_power_; }
-  /// Returns the power of beams that return near the source but are too weak for their diffraction to be computed, as a
-  /// fraction of the incident power.
+  /// Returns the power of beams that return near the source but are too weak for a computation of their diffraction. It
+  /// is a fraction of the incident power.
   double undiffracted_power() const { return undiffracted_power_; }
   /// Returns the cross-sectional area of the incident light in mm2, perpendicular to its direction.
   double beam_mm2() const { return beam_mm2_; }

@@ -24,13 +24,13 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Minimum half width of the map. It is the deflection of the beams plus this number of angular widths of the finest
-// details, and at least the outer radius of the annulus times the second constant.
+// Margin of the map around the most deflected beam, in angular widths of the finest details.
 constexpr double kMapMargin = 4.0;
+// Minimum half width of the map, divided by the outer radius of the annulus.
 constexpr double kAnnulusMargin = 1.25;
-// Number of rings around the direction to the source, and number of points per ring. The statistics of the cross
-// section are computed on each ring.
+// Number of rings around the direction to the source on which statistics of the cross section are computed.
 constexpr std::size_t kRings = 60;
+// Number of points on each ring.
 constexpr std::size_t kPointsPerRing = 72;
 // A warning is issued if more than this fraction of the incident power is in beams whose diffraction is not computed.
 constexpr double kMaxUndiffractedPower = 1e-3;

@@ -46,8 +46,8 @@ struct RangingPoint {
   CubeIndex index;
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  /// Cross section of a plane mirror that reflects the whole incident beam to the source, 4 pi A^2 / wavelength^2,
-  /// where A is the cross-sectional area of the beam. For an array, the sum over all illuminated cubes.
+  /// Cross section of a plane mirror that reflects the whole incident beam to the source. It is 4 pi A^2 /
+  /// wavelength^2, where A is the cross-sectional area of the beam. For an array, the sum over all illuminated cubes.
   double mirror_m2 = 0.0;
   ByPolarisation<double> centre;                             ///< in the direction exactly towards the source
   std::optional<ByPolarisation<AnnulusStatistics>> annulus;  ///< statistics over the directions of velocity aberration

@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* kRangingTheory = "docs/theory/ranging.md";
 constexpr const char* kArnold = "Arnold and Appleby, Thermal-optical design of a geodetic satellite, abstract";
-/// Wavelength of frequency-doubled Nd:YAG lasers, which are common in laser ranging, in nm. The next constant is the
-/// refractive index of fused silica at this wavelength.
+/// Wavelength of frequency-doubled Nd:YAG lasers, which are common in laser ranging, in nm.
 constexpr double kGreenNm = 532.0;
+/// Refractive index of fused silica at this wavelength.
 constexpr double kSilica = 1.4607;
 constexpr const char* kSilicaBody = "refractive_index = 1.4607";
 /// Diameter of the cube corners of the satellite LAGEOS.
