@@ -39,8 +39,8 @@ struct LatticeRegion {
 
 /// Opening in an opaque plane above the entrance face, such as the edge of a mount.
 struct FaceOpening {
-  Polygon outline;         ///< convex, counter-clockwise
-  double height_mm = 0.0;  ///< height of the plane above the entrance face, >= 0
+  Polygon outline;         ///< convex border of the opening, counter-clockwise
+  double height_mm = 0.0;  ///< height of the plane of the opening above the entrance face, >= 0
 };
 
 /// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the

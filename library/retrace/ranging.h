@@ -22,7 +22,7 @@ struct CrossSection {
   double centre_m2 = 0.0;  ///< in the direction exactly towards the source
   /// Mean, minimum and maximum over the annulus of velocity aberration; empty if the request defines no annulus.
   std::optional<double> mean_m2, min_m2, max_m2;
-  std::optional<double> range_correction_mm;  ///< empty for arrays
+  std::optional<double> range_correction_mm;  ///< range correction of a single cube; empty for arrays
   /// mean one-way range of an array relative to its origin; empty for a single cube
   std::optional<double> centroid_mm;
 };
@@ -31,16 +31,16 @@ struct RangingResult {
   std::vector<CrossSection> points;
   Warnings warnings;
   bool complete = true;
-  std::string json;          ///< JSON document retrace.ranging/1
+  std::string json;          ///< result as JSON of the format retrace.ranging/1
   std::string csv;           ///< table with one line for each point
-  std::string map_csv;       ///< far field of the first point; empty if no light returns
+  std::string map_csv;       ///< map of the first point as CSV; empty if no light returns
   std::string cubes_csv;     ///< illuminated cubes of the first point; empty for a single cube
   std::string response_csv;  ///< response of an array to a pulse; empty for continuous light
   std::string shots_csv;     ///< single shots; empty if no shots are requested
-  std::string table;         ///< summary as text
-  Drawing map;               ///< far field; empty if no light returns
-  Drawing rings;             ///< cross section as a function of the angle from the direction to the source
-  Drawing response;          ///< response to a pulse; empty for continuous light
+  std::string table;         ///< summary for the terminal
+  Drawing map;               ///< plot of the map; empty if no light returns
+  Drawing rings;             ///< plot of the cross section over the angle from the direction to the source
+  Drawing response;          ///< plot of the pulse response; empty for continuous light
 };
 
 /// Computes the cross sections of a single cube corner, or of the array of cubes in the file RangingRequest::cubes.

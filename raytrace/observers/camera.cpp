@@ -107,7 +107,8 @@ struct CameraTracer::Impl {
     const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
     return static_cast<std::uint32_t>(row * tiles_along + column);
   }
-  /// Returns true if all paths start outside of the part, where PathWalker::launch() finds the first surface.
+  /// Returns true if all paths start outside of the part. PathWalker::launch() then finds the first surface of each
+  /// path.
   bool launches_all() const { return entrance_face != nullptr || has_shells; }
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
   struct GuideTraining;
@@ -260,9 +261,9 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path from a point outside of the part. If the entrance face is curved or if there are
-  /// shells, this function is used for all paths. Otherwise, it is used for paths that do not meet the entrance face of
-  /// a part with notches or holes. Returns false if the light does not meet the part.
+  /// Traces the light of one path that starts outside of the part. Returns false if the light does not meet the part.
+  /// Behind a curved entrance face or shells, all paths start in this way. For a part with notches or holes, only the
+  /// paths that miss the entrance face do.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();

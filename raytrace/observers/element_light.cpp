@@ -381,7 +381,7 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
 /// Convergence or divergence of light behind a curved surface. phi is the optical path that the surface adds where
 /// light enters. It is a function of the point x of the tangent plane at which this light leaves.
 struct Convergence {
-  Eigen::Matrix2d second;  ///< second derivatives of phi
+  Eigen::Matrix2d second;  ///< matrix of the second derivatives of phi
   Vec2 first;              ///< gradient of phi at the centre of the entrance face
   double path_mm = 0.0;    ///< path length inside the part of light that leaves at the tangent point
 };

@@ -15,7 +15,8 @@ namespace {
 
 using studies::Variant;
 
-// Values of Series::look for feasible, excluded and chosen designs.
+// Values of Series::look for designs that satisfy all constraints, for designs that violate a constraint, and for the
+// best design.
 constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
 
 std::string title_of_study(const studies::Study& study) {

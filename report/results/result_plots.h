@@ -135,7 +135,7 @@ ImagePlot ranging_map_plot(const studies::RangingResult& result);
 /// source. The x axis is the angle from this direction.
 /// \pre the result has a map
 LinePlot ranging_rings_plot(const studies::RangingResult& result);
-/// Returns a plot of the response of an array to a pulse.
+/// Returns a plot of the response of an array to a pulse, for the first point.
 /// \pre the first point has a response
 LinePlot ranging_response_plot(const studies::RangingResult& result);
 

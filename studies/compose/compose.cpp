@@ -392,7 +392,7 @@ std::vector<Zone> robust_zones(const Composition& composition) {
 compute::StoreLayout compose_layout(const Study& study) {
   compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
-  layout.inputs.resize(study.parameters.size());  // no inputs for the level of accuracy
+  layout.inputs.resize(study.parameters.size());  // stored cells have no inputs for ErrorLevel
   // Constraints and objectives of the mixture do not change the values of cells. They are therefore not part of the
   // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {

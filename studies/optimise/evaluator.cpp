@@ -236,8 +236,8 @@ void Evaluator::check_constraints(Variant& variant) const {
   variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
-  // All terms of the objective may use the same random numbers. Their errors are then correlated and are therefore
-  // added linearly.
+  // All terms of the objective may use common random numbers, so their errors are correlated. The errors are therefore
+  // added linearly and not as squares.
   double sum_of_errors = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double error_of_least = 0.0;

@@ -45,7 +45,7 @@ class Evaluator {
   const std::string& budget_failure_reason() const { return budget_failure_reason_; }
   /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
-  /// Returns the standard error of a quantity.
+  /// Returns the standard error of a quantity for a design.
   double error_of(const Variant& variant, const std::string& quantity) const;
   /// Returns the derivative (slope) of the objective with respect to a parameter. Returns nothing if the derivative of
   /// a quantity of the objective cannot be computed.

@@ -28,7 +28,7 @@ struct FittedValue {
 /// Quadratic polynomial, fitted to the values inside a box by weighted least squares.
 class LocalModel {
  public:
-  /// Returns the number of coefficients of a quadratic polynomial.
+  /// Returns the number of coefficients of a quadratic polynomial with the given number of variables.
   static std::size_t coefficients(std::size_t dimensions);
   /// Fits a polynomial. With too few values for a quadratic polynomial, the polynomial is linear or constant.
   /// \param values values inside the box; at least one

@@ -12,7 +12,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Half width of a confidence interval of 95 %, in standard errors.
+/// Half width of a confidence interval of 95 %, as a multiple of the standard error.
 constexpr double kInterval = 1.96;
 /// Maximum loss of the objective by rounding, as a multiple of the standard error of the loss.
 constexpr double kRoundingErrors = 1.5;
@@ -20,7 +20,7 @@ constexpr double kRoundingErrors = 1.5;
 /// the distance between neighbouring points of the scan.
 constexpr double kFirstBox = 3.5;
 constexpr double kSmallestBox = 1e-8;
-/// Maximum LocalModel::deviation() of a model that is regarded as accurate.
+/// A model is regarded as accurate if its LocalModel::deviation() is below this value.
 constexpr double kAdequate = 1.3;
 /// The box shrinks only while the range of the objective inside the box exceeds this multiple of the standard error.
 constexpr double kBoxErrors = 6.0;
@@ -45,7 +45,7 @@ double distance(const SearchPoint& a, const SearchPoint& b) {
   return max;
 }
 
-/// Search for the maximum of a function. It stores all observations.
+/// Implementation of search_with_noise(). It stores all observations.
 class NoisySearch {
  public:
   NoisySearch(SearchedFunction& function, const NoisySearchSettings& settings)
@@ -382,7 +382,7 @@ class NoisySearch {
       observe(points, {settings_.last_scale, replicate});
   }
 
-  /// Observes points with the smallest error, compares the results, and returns the best point.
+  /// Observes points at the smallest error of the search. Returns the best point that satisfies all limits.
   std::optional<SearchPoint> compare(const std::vector<SearchPoint>& points) {
     observe_at_last(points);
     std::optional<SearchPoint> best;

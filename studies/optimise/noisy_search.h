@@ -19,7 +19,7 @@ inline constexpr double kRoundingBox = 1.5;
 /// between neighbouring points of the scan.
 inline constexpr double kPeakBox = 3.0;
 
-/// Settings of a search.
+/// Settings of search_with_noise().
 struct NoisySearchSettings {
   /// Values of ErrorLevel::scale for the scan, for the refinement and for the last comparison.
   double scan_scale = 16.0, refinement_scale = 4.0, last_scale = 2.0;
@@ -27,14 +27,15 @@ struct NoisySearchSettings {
   std::size_t max_combinations = 3;   ///< maximum number of combinations of discrete values that are refined
   std::size_t max_finalists = 3;      ///< maximum number of points in the last comparison
   std::size_t max_iterations = 12;    ///< maximum number of fitted models for each combination of discrete values
-  double spacing = 1.0 / 64.0;        ///< distance between neighbouring points of the scan
+  /// distance between neighbouring points of the scan, as a fraction of the interval
+  double spacing = 1.0 / 64.0;
   /// Maximum loss of the objective by rounding if the function has no random errors, as a fraction of the objective.
   double rounding_loss = 1e-6;
 };
 
-/// Result of a search.
+/// Result of search_with_noise().
 struct NoisyOptimum {
-  std::optional<SearchPoint> best;  ///< empty if no observed point satisfies the limits
+  std::optional<SearchPoint> best;  ///< best point; empty if no observed point satisfies all limits
   /// Another point near the observed points may have an objective that is larger by up to this amount, with a
   /// confidence of 95 %. The amount includes the loss by rounding. It is 0 if the function has no random errors.
   double resolution = 0.0;

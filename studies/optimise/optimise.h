@@ -133,11 +133,14 @@ compute::StoreLayout optimise_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
-/// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
-/// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
-/// within bounds and constraints. Finally, parameters are rounded if the objective does not decrease significantly. If
-/// quantities have random errors, search_with_noise() is used. Designs that are already in the store are not computed
-/// again, and the result is the same. The result of an interrupted search contains all designs of the store.
+/// Searches for the best design. The search has these steps:
+/// 1. A scan evaluates every combination of discrete values, each with a set of values of the continuous parameters.
+/// 2. For a single continuous parameter, bisection locates the values at which a constraint begins to be violated.
+/// 3. The best designs are refined, within the intervals of the parameters and the constraints.
+/// 4. The parameters are rounded if the objective does not decrease significantly.
+/// If quantities have random errors, search_with_noise() replaces steps 2 to 4. Designs in the store are not computed
+/// again, and the result does not depend on whether they were stored. After an interruption, the result contains all
+/// designs of the store.
 /// \throw OutputError if a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                  OptimiseObserver* observer, const Cancellation* cancel);

@@ -20,13 +20,13 @@ struct SearchPoint {
   auto operator<=>(const SearchPoint&) const = default;
 };
 
-/// Value with its standard error.
+/// Estimated value and its standard error.
 struct Estimate {
   double value = 0.0;
   double std_error = 0.0;
 };
 
-/// Observed values of a point.
+/// Values that are observed at a point.
 struct Observation {
   std::optional<Estimate> objective;  ///< empty if the objective is not defined at this point
   /// Excess over each limit: the amount by which the limit is exceeded, or a negative margin if the limit is satisfied.
@@ -42,7 +42,7 @@ class SearchedFunction {
   SearchedFunction(const SearchedFunction&) = delete;
   SearchedFunction& operator=(const SearchedFunction&) = delete;
 
-  /// Observes points at a level of accuracy. Returns the results in the order of the points.
+  /// Observes points at a level of accuracy. Returns one observation for each point, in the same order.
   virtual std::vector<Observation> observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) = 0;
   /// Returns true if a point satisfies all limits that can be checked without observing it.
   virtual bool is_allowed(const SearchPoint& point) const {

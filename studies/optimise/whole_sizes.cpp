@@ -14,7 +14,7 @@ constexpr double kWhole = 1e-9;
 /// Maximum number of sizes with which a whole number of elements fills one length of the part. If a length has more
 /// such sizes, the length is ignored.
 constexpr double kMaxSizes = 1000.0;
-/// Smallest step between round values, as a fraction of the value.
+/// Smallest step between values with few digits, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;
 
 }  // namespace

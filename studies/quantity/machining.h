@@ -32,7 +32,7 @@ struct MachiningProcess {
   std::optional<double> edge_life_mm;
   std::string machine;     ///< name or file of a machine; if empty, times are computed only from the tool path
   std::string process;     ///< name or file of a process; if empty, the defaults above apply
-  bool has_limits = true;  ///< true: optimizations respect the limits of the tool and the machine
+  bool has_limits = true;  ///< true: optimizations exclude designs that the tool or the machine cannot cut
   /// True: the design gets the facet texture and the root radius that result from cutting.
   bool surface_as_cut = false;
 };
@@ -42,7 +42,7 @@ struct ProcessValue {
   const char* key;  ///< key in the table [machining]
   double MachiningProcess::*machining;
   double fabrication::Process::*process;
-  double factor = 1.0;  ///< value of [machining] divided by the value of the process
+  double factor = 1.0;  ///< factor that converts the value of the process to the value of [machining]
 };
 inline constexpr ProcessValue kProcessValues[] = {
     {"clearance_um", &MachiningProcess::clearance_um, &fabrication::Process::clearance_mm, kUmPerMm},

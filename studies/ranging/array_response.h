@@ -17,7 +17,7 @@ namespace retrace::studies {
 
 /// Light that one cube of an array returns towards the receiver. The name follows the radar term echo.
 struct CubeEcho {
-  std::size_t cube = 0;   ///< index of the cube
+  std::size_t cube = 0;   ///< index of the cube in the array
   double range_mm = 0.0;  ///< one-way range relative to the origin of the array; negative if the cube is nearer
   double cross_section_m2 = 0.0;
   /// Field of each coherent group, along the axes of the source in the frame of the array.
@@ -26,7 +26,7 @@ struct CubeEcho {
 
 /// Centroid and spread of the ranges of all cubes. Each cube is weighted with its cross section.
 struct RangeDistribution {
-  double cross_section_m2 = 0.0;  ///< sum over all cubes
+  double cross_section_m2 = 0.0;  ///< sum of the cross sections of all cubes
   /// mean range relative to the origin of the array; negative if nearer than the origin
   double centroid_mm = 0.0;
   double rms_mm = 0.0;      ///< standard deviation of the ranges

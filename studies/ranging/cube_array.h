@@ -42,7 +42,7 @@ struct CubeGrid {
   int columns = 1;
   int rows = 1;
   double pitch_mm = 0.0;
-  double height_mm = 0.0;  ///< height of the entrance faces
+  double height_mm = 0.0;  ///< height (z) of the entrance faces
   double clocking_deg = 0.0;
   double clocking_step_deg = 0.0;  ///< additional rotation from one cube to the next, counted row by row
 };

@@ -31,7 +31,7 @@ double usual_range_correction_mm(double depth_mm, double group_index, double sin
 /// Optical data of the body at one wavelength.
 struct CubeIndex {
   double wavelength_nm = 0.0;
-  double index = 1.0;        ///< relative to the air around the part
+  double index = 1.0;        ///< refractive index relative to the air around the part
   double group_index = 1.0;  ///< group index n - w dn/dw, where w is the vacuum wavelength
 };
 

@@ -58,7 +58,7 @@ class CubeField {
     raytrace::field_lanes::Outline outline;
     geometry::Vec2 cosines;
     raytrace::JonesMatrix amplitude;
-    double power = 0.0;  ///< fraction of the incident power
+    double power = 0.0;  ///< power of the wave, as a fraction of the incident power
   };
 
   std::vector<std::vector<Wave>> groups_;

@@ -60,14 +60,14 @@ struct RangingPoint {
   // The following members are set only for arrays.
   std::vector<CubeEcho> echoes;  ///< light of each illuminated cube towards the receiver
   RangeDistribution ranges;
-  PulseResponse response;  ///< empty for continuous light
+  PulseResponse response;  ///< response to a pulse; empty for continuous light
   std::vector<Shot> shots;
 };
 
 /// Map of the far field of the first point, and cross sections on rings.
 struct RangingMap {
   double half_width_rad = 0.0;
-  std::size_t points = 0;  ///< number of points along each axis
+  std::size_t points = 0;  ///< number of rows, and number of columns
   /// Cross sections in rows, from the bottom row to the top row. Each row goes from left to right.
   std::vector<ByPolarisation<double>> values;
   std::vector<double> ring_rad;            ///< radii of rings around the direction to the source
@@ -91,7 +91,7 @@ struct RangingSettings {
 struct RangingResult {
   design::Design design;
   RangingSettings settings;
-  double depth_mm = 0.0;  ///< distance of the apex from the entrance face
+  double depth_mm = 0.0;  ///< distance from the entrance face to the apex
   double entrance_mm2 = 0.0;
   std::vector<RangingPoint> points;  ///< sorted by wavelength, then by incidence, then by azimuth
   RangingMap map;

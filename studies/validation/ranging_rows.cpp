@@ -55,7 +55,7 @@ double relative_peak(const char* further, const Cancellation* cancel) {
   return result.points.empty() ? 0.0 : result.points.front().centre.total / result.points.front().mirror_m2;
 }
 
-/// Returns the mean cross section on an annulus, in m2.
+/// Returns the mean cross section over an annulus of directions, in m2.
 double mean_on(const design::Design& design, double inner_urad, double outer_urad, const Cancellation* cancel) {
   RangingRequest request;
   request.aberration_arcsec = {inner_urad * kArcsecOfUrad, outer_urad * kArcsecOfUrad};

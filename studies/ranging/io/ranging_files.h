@@ -1,6 +1,6 @@
 #pragma once
 
-// Output documents and tables of `retrace ranging`.
+// Result of `retrace ranging` as JSON, CSV and text.
 
 #include <string>
 
