@@ -46,7 +46,7 @@ struct ComposeRequest {
   std::size_t scan = 65;           ///< number of cells in the first scan, for each combination of discrete values
   std::size_t rounds = 4;          ///< maximum number of searches with dual prices
   std::size_t starts = 3;          ///< number of cells at which each search with dual prices starts
-  int evaluations_per_start = 20;  ///< maximum number of cells that are evaluated from each start
+  int evaluations_per_start = 20;  ///< maximum number of evaluated cell designs per search
   std::optional<ErrorSpread> errors;
 };
 

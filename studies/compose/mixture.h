@@ -75,7 +75,7 @@ Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& ru
 
 /// Rounds the area fractions of a mixture to multiples of a step. Each fraction is rounded up or down. Among all
 /// combinations that satisfy the rules, the mixture with the largest merit is returned. If there is no such
-/// combination, `mixture` is returned. The bound and the prices of `mixture` are not changed.
+/// combination, `mixture` is returned. The upper bound of the merit and the dual prices are copied from `mixture`.
 /// \param steps number of steps into which the whole area is divided
 /// \pre the mixture is feasible
 Mixture rounded_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Mixture& mixture,

@@ -55,8 +55,8 @@ LocalModel::LocalModel(const SearchBox& box, const std::vector<FittedValue>& val
   std::size_t count = coefficients(dimensions);
   if (values.size() < count) count = dimensions + 1;
   if (values.size() < count) count = 1;
-  // Values without errors have equal weights. The weight of a very accurate value is limited, because the polynomial
-  // itself deviates from the function.
+  // Values without error estimates have equal weights. The weight of a very accurate value is limited, because the
+  // polynomial itself deviates from the function.
   double max_error = 0.0;
   for (const FittedValue& value : values) max_error = std::max(max_error, value.estimate.std_error);
   const double floor = max_error > 0.0 ? 0.1 * max_error : 1.0;

@@ -241,7 +241,8 @@ class DesignSearch {
   DesignFunction function_;
   const std::vector<std::size_t>& continuous_;
   bool is_noisy_ = false;
-  double neighbour_scale_ = 1.0;  ///< ErrorLevel::scale for the neighbours of the best design
+  double neighbour_scale_ =
+      1.0;  ///< factor on the target errors of the neighbours of the best design (ErrorLevel::scale)
 };
 
 /// Returns a text that explains why a design was not chosen.

@@ -11,8 +11,8 @@ namespace {
 
 /// Maximum deviation of the number of elements from a whole number. Arrays are laid out with the same tolerance.
 constexpr double kWhole = 1e-9;
-/// Maximum number of sizes with which a whole number of elements fills one length of the part. If a length has more
-/// such sizes, the length is ignored.
+/// Maximum number of element sizes that divide one length of the part into a whole number of elements. If a length has
+/// more such sizes, it does not influence the choice of the element size.
 constexpr double kMaxSizes = 1000.0;
 /// Smallest step between values with few digits, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;

@@ -80,8 +80,8 @@ double overlap(double range_difference_mm, double sigma_mm) {
   return std::exp(-range_difference_mm * range_difference_mm / (8.0 * sigma_mm * sigma_mm));
 }
 
-/// Returns a shot with continuous light. Continuous light has no arrival time, so the shot contains the centroid of the
-/// sum without interference.
+/// Returns one simulated measurement (shot) with continuous light. Continuous light has no arrival time. The range of
+/// the shot is therefore the centroid of the ranges of all cubes, weighted by their cross sections.
 Shot continuous_shot(const Emitters& all, const std::vector<std::complex<double>>& phases, double centroid_mm) {
   std::array<Amplitude, 2> sums = {Amplitude::Zero(), Amplitude::Zero()};
   for (std::size_t k = 0; k < all.amplitudes.size(); ++k)

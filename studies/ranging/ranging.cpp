@@ -70,8 +70,8 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
-/// Light that the illuminated cubes return in any direction, averaged over the angular extent of the source and the
-/// receiver.
+/// Cross section of all illuminated cubes as a function of the direction of the returned light. It is averaged over the
+/// angular extent of the source and the receiver.
 class ObservedLight {
  public:
   ObservedLight(const LitCubes& lit, const RangingSettings& settings, const Cancellation* cancel)
