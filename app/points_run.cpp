@@ -19,7 +19,7 @@ namespace {
 /// Progress bar that also shows the number of points per second and the number of failed points.
 class PointsBar : public studies::SweepObserver {
  public:
-  /// \param so_far function that returns a line about the finished points; may be empty
+  /// \param so_far returns a line about the finished points for long runs; may be empty
   PointsBar(RunText text, const CommonOptions& common, std::function<std::string()> so_far)
       : bar_(std::move(text), common), so_far_(std::move(so_far)) {}
 
@@ -33,7 +33,8 @@ class PointsBar : public studies::SweepObserver {
     const auto now = std::chrono::steady_clock::now();
     if (!so_far_ || now - last_line_ < kTimeBetweenLines || done == total) return;
     bar_.write_lines(so_far_() + '\n');
-    // Reading many points takes time. The intervals between lines therefore increase during a long run.
+    // Reading all finished points takes time. Long runs have many points, so the interval between two lines increases
+    // with this time.
     last_line_ = std::chrono::steady_clock::now();
     last_line_ += kPauseFactor * (last_line_ - now);
   }

@@ -70,7 +70,7 @@ void SearchBar::on_best(std::function<std::string(const studies::Variant&)> text
 
 void SearchBar::at_best(const studies::Variant& best) {
   if (text_of_best_) best_ = text_of_best_(best);
-  // Short runs print no lines, because their results follow soon.
+  // Short runs print no line, because they print their result soon afterwards.
   const auto now = std::chrono::steady_clock::now();
   if (!best_.empty() && now - last_line_ > kTimeBetweenLines) {
     bar_.write_lines("best so far: " + best_ + "\n");

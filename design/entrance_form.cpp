@@ -30,7 +30,8 @@ void find_offset(Design& design) {
   const Vec2 centre_mm = given ? Vec2((*given)[0], (*given)[1]) - half_mm : Vec2(Vec2::Zero());
   const auto surface = surface_of(*design.entrance->form(), {centre_mm.x(), centre_mm.y(), 0.0});
   read_named(design.where(design.entrance_key()), [&] {
-    // Messages give positions in the part frame. The substrate is given relative to the centre of the part.
+    // Error messages need positions in the part frame. The position of the substrate is relative to the centre of the
+    // part.
     const Vec2 middle_mm = centre_mm + half_mm;
     geometry::check_folds(*surface_of(*design.entrance->form(), {middle_mm.x(), middle_mm.y(), 0.0}),
                           geometry::to_polygon({Vec2::Zero(), 2.0 * half_mm}));

@@ -67,7 +67,7 @@ void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant&
   set_cant(keys, cant);
 }
 
-/// Returns the outline of the array or of a round cube corner. Returns null if there is no outline.
+/// Returns the outline of an array or of a round cube corner, or null if the design has no outline.
 const geometry::PlanRegion* outline_of(const PartSpec& part) {
   const auto* const cube = std::get_if<RoundCube>(&part.element);
   return cube != nullptr ? cube->outline.get() : part.array.outline.get();

@@ -81,7 +81,7 @@ struct FootprintOf {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// Returns the footprint of the circular face.
+  /// Returns the footprint of a round cube corner, which is its circular face.
   Footprint operator()(const RoundCube& cube) const {
     return {cube.diameter_mm, cube.diameter_mm, 0.25 * std::numbers::pi * cube.diameter_mm * cube.diameter_mm};
   }
@@ -137,8 +137,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes. Also checks that a single
-/// element has no outline, unless it is a round cube corner.
+/// Checks that the outline behind a curved entrance face is convex and has no holes. Also checks that single elements
+/// have no outline; only round cube corners may have one.
 void check_outline(const Document& document, const PartSpec& part) {
   if (has_outline(document) && part.array.arrangement == Arrangement::single &&
       !std::holds_alternative<RoundCube>(part.element))
@@ -148,7 +148,7 @@ void check_outline(const Document& document, const PartSpec& part) {
                 "must be a convex outline without holes if the design has a table [entrance_surface]");
 }
 
-/// Returns the key by which a design gives the errors of the dihedral angles.
+/// Returns the key with which the design specifies the errors of the dihedral angles.
 std::string_view dihedral_key(const Document& document) {
   return document.has(kDihedralErrorArcsec) ? kDihedralErrorArcsec : kDihedralErrorArcmin;
 }
@@ -326,7 +326,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
 
 /// Checks that the plate is thick enough to cover the highest points of the elements.
 void check_thickness(const Document& document, const PartSpec& part) {
-  if (std::holds_alternative<RoundCube>(part.element)) return;  // see check_length_of_round_cube()
+  if (std::holds_alternative<RoundCube>(part.element)) return;  // check_length_of_round_cube() checks the thickness
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = min_thickness_mm(part);
   if (part.thickness_mm < least_mm)

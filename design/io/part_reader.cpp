@@ -79,8 +79,8 @@ geometry::Scratch scratch_of(const Document& document, const std::string& entry)
   return scratch;
 }
 
-/// Returns the thickness of the plate above z = 0 for a round cube corner. The highest points of its nominal facets are
-/// at z = 0. If the design gives no length, the plate has its minimum thickness.
+/// Returns the thickness of a round cube corner above z = 0, the height of the highest facet points. If the design
+/// gives no length, the plate has its minimum thickness.
 double plate_of_round_cube_mm(const Document& document, const PartSpec& part) {
   const double depth_mm = geometry::element_depth_mm(part.element, part.angle_errors);
   if (const auto length_mm = document.number_if("element.length_mm")) return *length_mm - depth_mm;

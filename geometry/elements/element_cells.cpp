@@ -191,8 +191,8 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
 }
 
 Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
-  // Number of sides of a polygon that replaces a circle. It is a multiple of 12, so that the polygon has the symmetry
-  // of a cube corner.
+  // Number of sides of the polygon that approximates a circle. It is a multiple of 12, so that the polygon has all
+  // symmetries of a cube corner.
   constexpr int kSides = 180;
   constexpr double kStepDeg = 360.0 / kSides;
   const double step_rad = 2.0 * std::numbers::pi / kSides;
@@ -203,7 +203,7 @@ Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
 }
 
 Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre) {
-  constexpr double kSliver = 1e-9;  // relative to the diameter
+  constexpr double kSliver = 1e-9;  // merge distance as a fraction of the diameter
   Polygon outline = polygon_of_circle(centre, element.diameter_mm);
   if (element.outline)
     outline = clip(outline, moved(element.outline->hull, centre - element.outline->box_mm.centre()),

@@ -66,11 +66,11 @@ Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
                           bool rotated = false);
 
-/// Returns a regular polygon with the area of a circle. It has the symmetry of a cube corner that is not rotated. Three
-/// of its sides are parallel to the contour lines of the facets.
+/// Returns a regular polygon with the area of a circle. The polygon has all symmetries of a cube corner with its
+/// default orientation. Three of its sides are parallel to the contour lines of the facets.
 Polygon polygon_of_circle(const Vec2& centre_mm, double diameter_mm);
 
-/// Returns a cube corner with a circular face. Its apex is below `centre_mm`.
+/// Returns the facets of a cube corner with a circular face. Its apex is below `centre_mm`.
 Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
 /// Returns one element that is not rotated. Its lower left corner (prism) or its apex (cube corner) is at the origin.

@@ -10,13 +10,13 @@
 
 namespace retrace::geometry {
 
-/// Values of `element.kind`, in the order of the alternatives of Element. Round cube corners and balls are allowed only
-/// in designs.
+/// Values of `element.kind`, in the order of the alternatives of Element. Only designs may contain round cube corners
+/// and balls.
 inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ball"};
 inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
 
 inline constexpr auto kRoundCube = schema::only(kElementKinds, "round_icc");
-/// Kinds of cube corners, including the kinds that are allowed only in designs.
+/// Values of `element.kind` for cube corners, including kinds that only designs may contain.
 inline constexpr auto kCubeKindsOfDesigns = schema::only(kElementKinds, "hexagonal_icc", "round_icc");
 
 /// Words of `array.arrangement`, in the order of the enumerators of Arrangement.

@@ -420,7 +420,7 @@ class Tiler {
   double covered_mm2_ = 0.0;
 };
 
-/// Adds the chamfer and the mount of a round cube corner.
+/// Adds the chamfer and the mount of a round cube corner to a part.
 /// \param apex_mm position of the apex in plan
 void add_stops(Part& part, const RoundCube& cube, const Vec2& apex_mm) {
   if (cube.chamfer_mm > 0.0) part.clear_face = polygon_of_circle(apex_mm, cube.diameter_mm - 2.0 * cube.chamfer_mm);

@@ -85,8 +85,8 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
   return all;
 }
 
-/// Returns the number of copies of `group` that together have the power of `other`. Both groups have the same shape,
-/// but light that the entrance face has reflected on its way, or a resampled beam, may have any power. The number is
+/// Returns the number of copies of `group` that have the same total power as `other`. Both groups have the same shape.
+/// Their powers may differ if the entrance face has reflected the light, or if beams were resampled. The number is
 /// therefore not always an integer.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
@@ -348,7 +348,7 @@ CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, con
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
-  // Groups of each distinct cell, and the numbers of their copies that have the power of one cell.
+  // For each distinct cell: its groups, and the number of copies of each group that has the power of one cell.
   std::map<BeamsOfCell, std::vector<std::pair<std::size_t, double>>> known_cells;
   // All copies of a cell use the centroid of the first copy as the origin, so that equal fields have equal keys.
   std::optional<std::uint64_t> cell;

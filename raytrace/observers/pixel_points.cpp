@@ -6,22 +6,22 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of neighbouring pixels on each side that are included in the mean variance of a pixel. The training samples of
-// a single pixel are too few.
+// Maximum distance, in rows and columns, of the pixels whose variances are averaged. A single pixel has too few
+// training samples.
 constexpr std::size_t kAveragedPixels = 2;
-// Ratio of the points for noisy pixels to the evenly distributed points of a pass.
+// Total number of additional points for noisy pixels, divided by the total number of evenly distributed points.
 constexpr double kAdditionalPoints = 1.7;
-// Exponent e of the standard deviation s: the number of additional points of a pixel is proportional to s^e. The noise
-// of a picture is the sum of the standard errors s / sqrt(N) of its pixels. For a given total number of points, the
-// noise is minimal for e = 2/3.
+// The number of additional points of a pixel is proportional to a power of its standard deviation s. This constant is
+// the exponent. The noise of a picture is the sum of s / sqrt(N) over all pixels, where N is the number of points. For
+// a given total number of points, the exponent 2/3 minimises this noise.
 constexpr double kExponent = 2.0 / 3.0;
-// Ratio of the maximum to the minimum number of points of a pixel.
+// Maximum number of points of a pixel, divided by the minimum number.
 constexpr double kMaxRatio = 64.0;
-// Minimum factor by which the variance must decrease. Otherwise, all pixels have the same number of points.
+// If additional points reduce the variance by less than this factor, all pixels have the same number of points.
 constexpr double kMinGain = 2.0;
 
-/// Returns the standard deviation of a single sample for each pixel. The variance is averaged over the neighbouring
-/// pixels.
+/// Returns the standard deviation of a single sample for each pixel. It is computed from the mean variance of the pixel
+/// and its neighbours.
 std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::uint32_t samples,
                                   std::size_t columns) {
   const std::size_t rows = moments.size() / columns;

@@ -15,7 +15,8 @@ namespace {
 
 using studies::Variant;
 
-// Values of Series::look for feasible, excluded and chosen designs.
+// Values of Series::look for designs that satisfy all constraints, for designs that violate a constraint, and for the
+// best design.
 constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
 
 std::string title_of_study(const studies::Study& study) {
@@ -26,15 +27,15 @@ double number_of(const Variant& variant, std::size_t parameter) {
   return std::get<double>(variant.values[parameter].shown);
 }
 
-/// Returns a name and a factor for the plot of the objective. If the objective is a single quantity, the objective
-/// times the factor is this quantity.
+/// Returns the name of the plotted objective, and the factor by which the objective is multiplied. If the objective
+/// consists of one quantity, the factor converts it to this quantity.
 std::pair<std::string, double> shown_objective(const studies::OptimiseRequest& request) {
   const auto& weights = request.objective.weights;
   if (weights.size() != 1) return {"objective", 1.0};
   return {weights.front().first, 1.0 / weights.front().second};
 }
 
-/// Returns all designs with an objective, in ascending order of a parameter.
+/// Returns all designs with an objective, ordered by the value of a parameter.
 std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std::size_t parameter) {
   std::vector<const Variant*> designs;
   for (const Variant& variant : optimum.designs)
@@ -44,7 +45,7 @@ std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std:
   return designs;
 }
 
-/// Returns the ranges of a parameter in which the evaluated designs are feasible. A range ends halfway between a
+/// Returns the ranges of a parameter in which all evaluated designs are feasible. Each range ends halfway between a
 /// feasible and an infeasible design.
 std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, std::size_t parameter) {
   std::vector<Range> ranges;
@@ -62,7 +63,7 @@ std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, s
   return ranges;
 }
 
-/// Returns a plot whose axes are the two most important parameters. Colours show the objective.
+/// Returns a plot with the two most important parameters as axes. The colours of the points show the objective.
 LinePlot plane_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                     const studies::Optimum& optimum, std::size_t x, std::size_t y) {
   const auto [name, factor] = shown_objective(request);
@@ -139,7 +140,7 @@ LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRe
     const auto k = static_cast<std::size_t>(found - study.quantities.begin());
     const double limit = constraint.max ? *constraint.max : *constraint.min;
     Series series{constraint.text(), {}, {}, {}};
-    // A quantity with the limit 0 is drawn as 1 + quantity. Its limit is then also at 1.
+    // A quantity cannot be divided by the limit 0. In this case, 1 + quantity is drawn, so that the limit is also at 1.
     const double scale = limit != 0.0 ? 1.0 / limit : 1.0;
     const double shift = limit != 0.0 ? 0.0 : 1.0;
     for (const Variant* const design : designs) {

@@ -22,8 +22,8 @@ std::string ranging_title(const RangingResult& result) {
                      shortest(p.index.wavelength_nm), shortest(p.incidence_deg), shortest(p.azimuth_deg));
 }
 
-/// Returns a panel with one component of the map. The order of the rows is reversed, because pictures begin with the
-/// top row and maps with the bottom row.
+/// Returns a panel with one component of the map. Pictures begin with the top row and maps with the bottom row, so the
+/// order of the rows is reversed.
 template <class Component>
 ImagePanel ranging_panel(const RangingResult& result, const char* title, double full_value,
                          const Component& component) {

@@ -77,8 +77,8 @@ class CellReader {
   std::vector<std::pair<std::size_t, double>> prices_;
 };
 
-/// Passes the progress of a search with dual prices to an observer. Best designs are not reported, because the
-/// objective of this search is not the objective of the part.
+/// Passes the progress of a search with dual prices to an observer. Best designs of this search are not reported,
+/// because its objective differs from the objective of the part.
 class PricingObserver final : public OptimiseObserver {
  public:
   explicit PricingObserver(OptimiseObserver* observer) : observer_(observer) {}
@@ -120,7 +120,7 @@ class Composer {
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
-  /// Chooses the best part that consists of cells in the store.
+  /// Chooses the best part from the cells in the store.
   void choose_from_store(Composition& composition) {
     family_.add_stored();
     read_catalogue(composition);
@@ -392,7 +392,7 @@ std::vector<Zone> robust_zones(const Composition& composition) {
 compute::StoreLayout compose_layout(const Study& study) {
   compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
-  layout.inputs.resize(study.parameters.size());  // no inputs for the level of accuracy
+  layout.inputs.resize(study.parameters.size());  // stored cells have no inputs for ErrorLevel
   // Constraints and objectives of the mixture do not change the values of cells. They are therefore not part of the
   // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {

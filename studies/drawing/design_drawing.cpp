@@ -250,7 +250,7 @@ std::string arrangement_text(const Part& part) {
   return text;
 }
 
-/// Adds remarks on the mount and the chamfer of a round cube corner.
+/// Adds remarks about the mount and the chamfer of a round cube corner.
 void add_stops(std::vector<std::string>& remarks, const PartSpec& spec) {
   const auto* const cube = std::get_if<geometry::RoundCube>(&spec.element);
   if (cube == nullptr) return;

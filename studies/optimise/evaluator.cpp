@@ -59,7 +59,7 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
   }
 }
 
-/// Returns the study with its analysis settings adapted to a level of accuracy.
+/// Returns a copy of the study whose target error and random numbers correspond to a level of accuracy.
 const Study& Evaluator::study_at(const ErrorLevel& level) {
   if (!request_.has_levels) return study_;
   const auto found = studies_.find(level);
@@ -123,7 +123,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   });
   bool is_interrupted = is_cancelled(cancel_);
   for (std::size_t k = 0; k < open.size(); ++k) {
-    // If the search is interrupted, all finished designs are stored before the search ends.
+    // If the user interrupts the search, all finished designs are stored before the search ends.
     is_interrupted = is_interrupted || !points[k];
     if (!points[k]) continue;
     if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
@@ -135,7 +135,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   return found;
 }
 
-/// Adds a stored point to the results of a design at a level of accuracy.
+/// Adds a stored result to the results of its design. `level` is the accuracy with which the result was computed.
 void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const compute::StoredPoint& point) {
   const std::string key = key_of(design);
   std::map<ErrorLevel, Variant>& results = by_level_[key];
@@ -150,7 +150,7 @@ void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const c
   evaluated_[at->second].number = number;
 }
 
-/// Returns the mean of the results with the smallest target error.
+/// Returns the mean of the most accurate results, which are those with the smallest target error.
 Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   Variant mean = results.begin()->second;
   std::size_t count = 0;
@@ -175,7 +175,7 @@ Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   return mean;
 }
 
-/// Reports a design to the observer if it is better than all designs that were reported before.
+/// Reports a design to the observer if it is better than all previously reported designs.
 void Evaluator::report_best(const Variant& variant) {
   if (!variant.feasible()) return;
   const double value = variant.cautious_objective();
@@ -236,8 +236,8 @@ void Evaluator::check_constraints(Variant& variant) const {
   variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
-  // All terms of the objective may use the same random numbers. Their errors are then correlated and are therefore
-  // added linearly.
+  // All terms of the objective may use common random numbers, so their errors are correlated. The errors are therefore
+  // added linearly and not as squares.
   double sum_of_errors = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double error_of_least = 0.0;

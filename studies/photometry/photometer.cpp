@@ -95,7 +95,8 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 /// \param model null if it is not known yet; the surface is then assumed to be exact
 void allow_tangent_planes(const design::Design& design, const design::OpticalModel* model,
                           const PhotometrySettings& request, raytrace::EngineFacts& facts) {
-  // A computation with tangent planes would omit the chamfer and the mount of a single element.
+  // Tangent planes are not used for a round cube corner with a chamfer or a mount, because the traced excerpt would not
+  // contain them.
   const auto* const round =
       design.elements() != nullptr ? std::get_if<geometry::RoundCube>(&design.part().element) : nullptr;
   if (round != nullptr && (round->chamfer_mm > 0.0 || round->mount_diameter_mm > 0.0)) return;

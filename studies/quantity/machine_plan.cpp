@@ -14,14 +14,14 @@
 namespace retrace::studies {
 namespace {
 
-/// Maximum width of a chisel that a job allows.
+/// Maximum chisel width that jobs allow.
 constexpr double kMaxToolWidthMm = 2.0;
-/// Maximum tool life that a job allows.
+/// Maximum tool life that jobs allow.
 constexpr double kMaxEdgeLifeMm = 1e9;
-/// Allowed excess of the tool's width over the element's width: one nanometre.
+/// The tool may be wider than the element by at most this amount, which allows for rounding errors.
 constexpr double kExcessMm = 1e-6;
 
-/// Returns a job that cuts the prisms of a design according to [machining].
+/// Returns a job that cuts the prisms of a design with the process of [machining].
 fabrication::Job job_of_process(const design::Design& design, const geometry::RtpElement& prism,
                                 const MachiningProcess& process) {
   JobRequest request;
@@ -31,15 +31,15 @@ fabrication::Job job_of_process(const design::Design& design, const geometry::Rt
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
-  // A plan that exceeds the tool life would be refused. The job therefore has a very large tool life, and its plan
-  // contains the length of cut. The study compares this length with the actual tool life.
+  // Planning fails if the cut is longer than the tool life. The job therefore has the maximum tool life, and the study
+  // compares the length of cut with the actual tool life.
   if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
 }
 
-/// Returns the smallest distance between a linear axis and its limit. The distance is computed at the roots of all
-/// elements and at the clearance height above the roots.
+/// Returns the smallest distance between the position of a linear axis and a limit of this axis. The positions are
+/// computed at the roots of all elements and at the clearance height above the roots.
 double travel_of(const fabrication::Job& job, const fabrication::Machine& machine,
                  const std::vector<fabrication::CutElement>& elements) {
   using geometry::Vec3;
@@ -92,8 +92,8 @@ MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess
     const double cut_mm = std::accumulate(planned.program_cuts_mm.begin(), planned.program_cuts_mm.end(), 0.0);
     plan.cut_per_element_mm = cut_mm / static_cast<double>(std::max<std::size_t>(1, elements.size()));
   } catch (const InputError&) {
-    // The machine cannot reach a facet, or an axis would exceed a limit. The results remain empty, and empty results
-    // violate all limits.
+    // The machine cannot reach a facet, or an axis would exceed a limit. The results remain empty, and an empty result
+    // violates every limit.
   }
   return plan;
 }

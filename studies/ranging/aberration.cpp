@@ -14,17 +14,20 @@ namespace {
 
 using geometry::Vec2;
 
-// Gravitational constant times the mass of the Earth, and its equatorial radius (IERS Conventions 2010, Table 1.1).
+// Gravitational constant times the mass of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthKm3PerS2 = 398600.4418;
+// Equatorial radius of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthRadiusKm = 6378.1366;
 constexpr double kLightKmPerS = 1e6 * kLightMmPerPs;
 
-// Number of integration points per width of the finest details, and number of additional points.
+// Number of integration points per angular width of the finest details.
 constexpr double kPointsPerDetail = 3.0;
+// Number of integration points that are added, so that small annuli also have enough points.
 constexpr double kMorePoints = 6.0;
-// Number of rings and of points along each ring, per width of the finest details, for the search of extremes.
+// Number of sample rings, and of samples along each ring, per angular width of the finest details. The samples are the
+// starts of the search for extremes.
 constexpr double kSearchPerDetail = 6.0;
-// Number of times that the search for an extreme halves its step.
+// The search for an extreme ends after this number of steps. Each step that finds no larger value is halved.
 constexpr int kHalvings = 20;
 
 Vec2 at(double radius, double angle) {
@@ -61,7 +64,8 @@ struct PolarPoint {
   double angle = 0.0;
 };
 
-/// Returns the largest value of a function near a point. The pattern search halves its step repeatedly.
+/// Returns the largest value of a function near a point. The pattern search tries four neighbours and halves its step
+/// if none of them has a larger value.
 double refined_max(const Annulus& annulus, PolarPoint best, double value, double step_rad,
                    const DirectionValues& values) {
   double radial = step_rad;
@@ -91,7 +95,7 @@ double refined_max(const Annulus& annulus, PolarPoint best, double value, double
 Annulus aberration_of_orbit(double height_km, double elevation_deg) {
   const double radius_km = kEarthRadiusKm + height_km;
   const double largest = 2.0 * std::sqrt(kEarthKm3PerS2 / radius_km) / kLightKmPerS;
-  // Sine of the angle between the directions from the satellite to the station and to the centre of the Earth.
+  // Sine of the angle at the satellite between the directions to the station and to the centre of the Earth.
   const double sine = kEarthRadiusKm / radius_km * std::cos(elevation_deg * kRadPerDeg);
   return {largest * std::sqrt(1.0 - sine * sine), largest};
 }

@@ -27,14 +27,17 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
+// Margin of the map around the most deflected beam, in angular widths of the finest details.
 constexpr double kMapMargin = 4.0;
+// Minimum half width of the map, divided by the outer radius of the annulus.
 constexpr double kAnnulusMargin = 1.25;
-// Number of rings, and number of points per ring, for the cross section as a function of the angle from the source.
+// Number of rings around the direction to the source on which statistics of the cross section are computed.
 constexpr std::size_t kRings = 60;
+// Number of points on each ring.
 constexpr std::size_t kPointsPerRing = 72;
-// Maximum power that is not diffracted and causes no warning, as a fraction of the incident power.
+// A warning is issued if more than this fraction of the incident power is in beams whose diffraction is not computed.
 constexpr double kMaxUndiffractedPower = 1e-3;
+<<<<<<< HEAD
 // Maximum number of directions in which the far field of one point is evaluated. This takes some minutes.
 constexpr double kMaxDirections = 1e8;
 // Maximum number of directions of an annulus, whose values are all stored.
@@ -43,6 +46,9 @@ constexpr double kMaxAnnulusDirections = 1e7;
 // progress.
 constexpr std::size_t kDirectionsPerReport = 65536;
 // Degree of polarisation below which light counts as unpolarised.
+=======
+// Light with a smaller degree of polarisation counts as unpolarised.
+>>>>>>> 802f7847a0c5c6a4edab9edc43d65142005b01e9
 constexpr double kMinPolarisation = 1e-9;
 
 Stokes sent_stokes(const RangingRequest& request, const design::Design& design) {
@@ -66,7 +72,8 @@ Vec2 observation_of(const RangingRequest& request, const std::optional<Annulus>&
   return annulus ? Vec2(0.5 * (annulus->inner_rad + annulus->outer_rad), 0.0) : Vec2(Vec2::Zero());
 }
 
-/// Divides returned light into light with the transmitted polarisation and light with the orthogonal polarisation.
+/// Splits the returned light into its component with the transmitted polarisation and its component with the orthogonal
+/// polarisation.
 ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sent) {
   ByPolarisation<double> result{returned.i};
   const double degree = std::hypot(sent.q, sent.u, sent.v);
@@ -77,6 +84,7 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
+<<<<<<< HEAD
 bool has_polarisation(const Stokes& sent) {
   return by_polarisation({}, sent).parallel.has_value();
 }
@@ -116,6 +124,10 @@ class PointProgress {
 };
 
 /// Returned light of the illuminated cubes in any direction, averaged over the discs of source and receiver.
+=======
+/// Cross section of all illuminated cubes as a function of the direction of the returned light. It is averaged over the
+/// angular extent of the source and the receiver.
+>>>>>>> 802f7847a0c5c6a4edab9edc43d65142005b01e9
 class ObservedLight {
  public:
   ObservedLight(const LitCubes& lit, const RangingSettings& settings, PointProgress& progress,
@@ -147,7 +159,8 @@ class ObservedLight {
     return result;
   }
 
-  /// Returns the statistics of one component over an annulus. The result is empty if the component is not defined.
+  /// Returns the statistics of one polarisation component over an annulus. Returns nothing if the component is not
+  /// defined, because the transmitted light is unpolarised.
   template <class Component>
   std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
     if (!component(by_polarisation({}, sent_))) return std::nullopt;
@@ -208,9 +221,9 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
   return map;
 }
 
-/// Returns the design after replacing the errors of its dihedral angles.
+/// Returns a copy of a design with other errors of the dihedral angles.
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
-  // An empty value removes a key. The design may give its errors in either unit.
+  // An empty value removes a key. Both keys are removed, because the design may contain either of them.
   const std::vector<std::string> overrides = {
       fmt::format("{}=", design::kDihedralErrorArcmin),
       fmt::format("{}=[{}, {}, {}]", design::kDihedralErrorArcsec, shortest(errors_arcsec[0]),
@@ -227,7 +240,7 @@ std::vector<double> sorted_wavelengths(const RangingRequest& request, const desi
   return wavelengths;
 }
 
-/// Returns the cubes of a study. Without an array, the result is a single cube whose frame is the part frame.
+/// Returns the cubes of a study. Without an array, the result contains a single cube in the part frame.
 CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
   const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
   CubeSet set;
@@ -301,7 +314,7 @@ struct RangingStudy::Prepared {
   RangingSettings settings;
   CubeSet set;
 
-  /// Computes one point. Adds the map to `result` for the first point.
+  /// Computes one point. For the first point, also stores the map in `result`.
   RangingPoint point_of(std::size_t wavelength, double incidence_deg, double azimuth_deg, RangingResult& result,
                         Progress* progress, const Cancellation* cancel) const {
     const CubeCorner& corner = set.variants.front();
@@ -406,7 +419,7 @@ RangingResult RangingStudy::run(Progress* progress, const Cancellation* cancel) 
         result.points.push_back(std::move(point));
         of_point.at(1.0);
       }
-  if (result.points.empty()) result.map = {};  // the map of an interrupted point is incomplete
+  if (result.points.empty()) result.map = {};  // the map is incomplete, because its point was interrupted
   result.complete = result.points.size() == total;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -40,7 +40,7 @@ bool is_round(const PartSpec& spec) {
   return std::holds_alternative<geometry::RoundCube>(spec.element);
 }
 
-/// Returns true if the design gives its dihedral errors in arc seconds.
+/// Returns true if the design specifies its dihedral angle errors in arc seconds.
 bool is_in_arcsec(const design::Design& design) {
   return design.document && design.document->has(design::kDihedralErrorArcsec);
 }

@@ -180,7 +180,8 @@ TEST_F(Shell, RaysPassThem) {
   EXPECT_GT(behind["ledger"]["shell_reflected"].get<double>(), 0.1);
 }
 
-// The light of the lamp crosses the four surfaces of the plate on its way to the part and back.
+// The light crosses the plate on its way to the part and on its way back, so it passes four surfaces of the plate in
+// total.
 TEST_F(Shell, CameraSeesThePartThroughThem) {
   const Arguments camera = {"image",          "design.toml", "--camera", "--observation-deg=0", "--no-diffraction",
                             "--pixels=40x30", "--passes=16"};
@@ -195,7 +196,7 @@ TEST_F(Shell, CameraSeesThePartThroughThem) {
   const Outcome outcome =
       retrace(folder_, {"image", "design.toml", "--camera", "--observation-deg=0", "--pixels=8x6", "--passes=2"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;  // the picture has no diffraction
+  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;  // the warning states that the picture has no diffraction
   EXPECT_EQ(refusal(kEndless + kPlate, {"image", "design.toml", "--camera", "-o", "out"}),
             "design.toml:5: array.extent");
 }

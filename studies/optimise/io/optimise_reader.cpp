@@ -60,8 +60,8 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
   return keys;
 }
 
-/// Returns the constraints of the study, and the constraints that follow from its tool and its machine. If the study
-/// constrains a quantity, this constraint replaces the limit of the tool or the machine.
+/// Returns the constraints of the study file and the constraints that its tool and its machine imply. A constraint of
+/// the study file replaces an implied constraint on the same quantity.
 std::vector<Constraint> constraints_of(const Study& study) {
   std::vector<Constraint> constraints = read_constraints(study);
   const std::size_t given = constraints.size();

@@ -28,7 +28,7 @@ Json variant_json(const Study& study, const Variant& variant) {
   return json;
 }
 
-/// Returns an evaluated design as JSON. The key `feasible` states whether it satisfies all constraints.
+/// Returns an evaluated design as JSON. The key `feasible` is true if the design satisfies all constraints.
 Json design_json(const Study& study, const Variant& variant) {
   Json json = variant_json(study, variant);
   json["feasible"] = variant.feasible();

@@ -32,7 +32,7 @@ constexpr NumberRange kErrorArcsec{.low = -3600.0, .high = 3600.0};
 
 constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
 
-/// Entry [[cube]] of a file.
+/// Table [[cube]] of a file of cubes.
 struct CubeEntry {
   std::array<double, 3> position_mm{};
   std::array<double, 3> axis = kUp;
@@ -40,7 +40,7 @@ struct CubeEntry {
   std::optional<std::array<double, 3>> dihedral_error_arcsec;
 };
 
-/// Content of a file of cubes.
+/// Tables of a file of cubes.
 struct CubesFile {
   std::vector<CubeRing> rings;
   std::vector<CubeGrid> grids;
@@ -130,14 +130,14 @@ constexpr std::array<std::string_view, 3> kErrorColumns = {"dihedral_error_1_arc
                                                            "dihedral_error_3_arcsec"};
 constexpr std::size_t kAxisColumn = 3;
 
-/// Columns of a table of cubes, in their required order.
+/// Indices of the columns in a table of cubes.
 struct CubeColumns {
   std::vector<std::string_view> names;
   std::optional<std::size_t> clocking;
-  std::optional<std::size_t> errors;  ///< index of the first of three columns
+  std::optional<std::size_t> errors;  ///< index of the first of three columns with angle errors
 };
 
-/// Returns the columns that a table must have. If the table has any optional column, the optional columns are included.
+/// Returns the columns that a table must have. The three columns of angle errors must be given together or not at all.
 CubeColumns columns_of(std::string_view text, const std::string& source_name) {
   const CsvReader table(text, source_name, kMaxCubeBytes);
   CubeColumns columns{{kCubeColumns.begin(), kCubeColumns.end()}, {}, {}};

@@ -72,7 +72,8 @@ std::vector<std::size_t> by_contribution(const std::vector<compute::SobolIndex>&
   return order;
 }
 
-/// Returns a mean and half of the width of its confidence interval as text. This width determines the number of digits.
+/// Returns a mean and its uncertainty, which is half the width of its confidence interval, as text. The uncertainty
+/// determines the number of digits.
 std::string mean_text(double mean, const compute::IntervalEstimate& interval) {
   const double half = 0.5 * (interval.high - interval.low);
   if (!(half > 0.0)) return fmt::format("{:.6g}", mean);

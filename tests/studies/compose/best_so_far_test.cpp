@@ -1,4 +1,4 @@
-// Tests of interrupted compositions, and of area fractions that are multiples of a step.
+// Tests of interrupted compositions and of rounded area fractions.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ Analytic::Function lobe_at(double point) {
   return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
 }
 
-/// A study of two goals. `computed` counts the designs whose first goal was computed.
+/// Returns a study with two goals. `computed` counts the designs for which the first goal was computed.
 Study lobes(const std::string& keys, std::atomic<int>* computed, Cancellation* cancel, int end) {
   const Functions functions = {{"g.1",
                                 [=](double x, double y) {
@@ -54,13 +54,13 @@ TEST(BestSoFar, AnInterruptedCompositionHasThePartOfTheFinishedCells) {
     double fraction = 0.0;
     for (const Zone& zone : composition.best->zones) fraction += zone.area_fraction;
     EXPECT_NEAR(fraction, 1.0, 1e-9);
-    // The part is at least as good as the best single cell.
+    // The part must be at least as good as a part that consists of the best single cell.
     double single = 0.0;
     for (const FamilyCell& cell : composition.catalogue)
       single = std::max(single, *std::ranges::min_element(cell.mixed.goals));
     EXPECT_GE(composition.best->mixture.min_goal, single - 1e-9);
     EXPECT_FALSE(composition_text(study, request, composition).empty());
-    // The next run continues with the stored cells. Its result is equal to the result of a run without interruption.
+    // The next run continues with the stored cells. Its result must be equal to the result of an uninterrupted run.
     const Study whole = lobes("", nullptr, nullptr, 0);
     compute::ResultStore fresh("", compose_layout(whole), compute::IfExists::refuse);
     const Composition resumed = compose(whole, request, store, nullptr, nullptr);
@@ -91,7 +91,7 @@ TEST(BestSoFar, FractionsAreMultiplesOfTheStep) {
   EXPECT_LE(composition.best->mixture.merit, composition.unlimited_merit + 1e-12);
 }
 
-/// The test compares the result with all neighbouring multiples of the step, for three cells.
+/// For three cells, the result is compared with all combinations of fractions that are rounded up or down.
 TEST(BestSoFar, TheRoundedMixtureIsTheBestOfItsNeighbours) {
   const std::vector<MixedCell> cells = {
       {{1.0, 0.2, 0.3}, {0.5}, 0.0}, {{0.1, 0.9, 0.4}, {1.5}, 0.1}, {{0.3, 0.2, 1.1}, {2.5}, 0.0}};

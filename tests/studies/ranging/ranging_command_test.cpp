@@ -1,4 +1,4 @@
-// Tests of the command `retrace ranging`: files, values, exit codes and refused options.
+// Tests of the command `retrace ranging`: output files, values, exit codes and refused options.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST(RangingCommand, WritesPointsMapAndDrawings) {
   EXPECT_EQ(json["schema"], "retrace.ranging/1");
   EXPECT_NEAR(point["centre"]["parallel_m2"].get<double>() + point["centre"]["crossed_m2"].get<double>(),
               point["centre"]["total_m2"].get<double>(), 1.0);
-  // The peak is inversely proportional to the square of the wavelength.
+  // The cross section of the mirror is inversely proportional to the square of the wavelength.
   EXPECT_NEAR(json["points"][2]["mirror_m2"].get<double>(), 0.25 * point["mirror_m2"].get<double>(), 1.0);
   EXPECT_NEAR(point["range_correction_mm"].get<double>(),
               json["depth_mm"].get<double>() * point["group_index"].get<double>(), 1e-6);
@@ -55,7 +55,7 @@ TEST(RangingCommand, ArraysHaveCubesPulsesAndShots) {
   const Json json = folder.json("out/ranging.json");
   EXPECT_EQ(json["points"][0]["ranges"]["lit_cubes"], 6);
   EXPECT_EQ(json["points"][0]["shots"]["count"], 50);
-  // A different seed changes only the shots.
+  // A different seed must change only the single shots.
   Arguments other = arguments;
   other.insert(other.end(), {"--seed", "2"});
   EXPECT_EQ(retrace(folder, other).code, 0);
