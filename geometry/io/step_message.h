@@ -1,6 +1,6 @@
 #pragma once
 
-// Results of the program that reads STEP files (step_reader_program.cpp), as a sequence of numbers. Both programs run
+// Results of the program that reads STEP files (step_program/), as a sequence of numbers. Both programs run
 // on the same machine, so the numbers have its native format.
 
 #include <cstring>
@@ -12,6 +12,7 @@
 
 #include "geometry/outline/outline.h"
 #include "geometry/surface/step_face.h"
+#include "geometry/surface/step_surface.h"
 
 namespace retrace::geometry {
 

@@ -8,6 +8,7 @@
 
 #include "geometry/outline/outline.h"
 #include "geometry/surface/step_face.h"
+#include "geometry/surface/step_surface.h"
 
 namespace retrace::geometry {
 

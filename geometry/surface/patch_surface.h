@@ -22,6 +22,21 @@ struct HeightPatch {
   Vec2 centre_mm = Vec2::Zero();
   Vec2 half_mm = Vec2::Ones();                      ///< half of the size of the rectangle
   std::array<double, kPatchTerms> coefficients{};  ///< in mm, sorted by i, then by j
+
+  /// Returns z in mm with all derivatives of the type T.
+  template <class T>
+  T evaluate(const T& x_mm, const T& y_mm) const {
+    const T u = (x_mm - centre_mm.x()) * (1.0 / half_mm.x());
+    const T v = (y_mm - centre_mm.y()) * (1.0 / half_mm.y());
+    constexpr int kTerms = kPatchDegree + 1;
+    const double* row = coefficients.data() + kPatchDegree * kTerms;
+    T sum = jets::horner(row, kTerms, v);
+    for (int i = kPatchDegree - 1; i >= 0; --i) {
+      row -= kTerms;
+      sum = sum * u + jets::horner(row, kTerms, v);
+    }
+    return sum;
+  }
 };
 
 /// Node of a binary tree of rectangles. A node either divides its rectangle at a line of constant x or y, or refers to
@@ -61,17 +76,8 @@ class PatchSurface {
   template <class T>
   T evaluate(const T& x_mm, const T& y_mm) const {
     const HeightPatch* const patch = patch_at({jets::value_of(x_mm), jets::value_of(y_mm)});
-    if (patch == nullptr) return jets::constant_like(x_mm, std::numeric_limits<double>::quiet_NaN());
-    const T u = (x_mm - patch->centre_mm.x()) * (1.0 / patch->half_mm.x());
-    const T v = (y_mm - patch->centre_mm.y()) * (1.0 / patch->half_mm.y());
-    constexpr int kTerms = kPatchDegree + 1;
-    const double* row = patch->coefficients.data() + kPatchDegree * kTerms;
-    T sum = jets::horner(row, kTerms, v);
-    for (int i = kPatchDegree - 1; i >= 0; --i) {
-      row -= kTerms;
-      sum = sum * u + jets::horner(row, kTerms, v);
-    }
-    return sum;
+    return patch != nullptr ? patch->evaluate(x_mm, y_mm)
+                            : jets::constant_like(x_mm, std::numeric_limits<double>::quiet_NaN());
   }
 
   /// Returns the patch that gives the height at a point, or null if there is no surface.
