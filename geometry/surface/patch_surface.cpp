@@ -1,6 +1,8 @@
 #include "geometry/surface/patch_surface.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 namespace retrace::geometry {
@@ -44,6 +46,35 @@ const HeightPatch* PatchTree::patch_at(const Vec2& point_mm) const {
 PatchSurface::PatchSurface(std::vector<PatchTree> faces, std::vector<FaceBorder> borders)
     : faces_(std::move(faces)), borders_(std::move(borders)) {
   if (faces_.size() > 1) make_slabs();
+  std::size_t points = 0;
+  for (const FaceBorder& border : borders_)
+    for (const std::vector<Vec2>& loop : border) points += loop.size();
+  constexpr std::size_t kMaxPoints = 1024;
+  const std::size_t stride = points / kMaxPoints + 1;
+  for (const FaceBorder& border : borders_)
+    for (const std::vector<Vec2>& loop : border)
+      for (std::size_t k = 0; k < loop.size(); k += stride) {
+        const Vec2& next = loop[(k + stride) % loop.size()];
+        // Sides of the border are divided, so that the surface continues nearly perpendicular to them.
+        constexpr int kPartsOfSide = 8;
+        const int parts = points < kMaxPoints / kPartsOfSide ? kPartsOfSide : 1;
+        for (int i = 0; i < parts; ++i)
+          coarse_border_.push_back(loop[k] + (static_cast<double>(i) / parts) * (next - loop[k]));
+      }
+}
+
+PatchSurface::TangentBeyond PatchSurface::tangent_beyond(const Vec2& point_mm) const {
+  const auto nearest =
+      std::min_element(coarse_border_.begin(), coarse_border_.end(), [&](const Vec2& a, const Vec2& b) {
+        return (a - point_mm).squaredNorm() < (b - point_mm).squaredNorm();
+      });
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  if (nearest == coarse_border_.end()) return {point_mm, none, Vec2::Constant(none)};
+  const HeightPatch* const patch = faces_[face_at(*nearest)].patch_at(*nearest);
+  if (patch == nullptr) return {point_mm, none, Vec2::Constant(none)};
+  const jets::Gradient z =
+      patch->evaluate(jets::Gradient(nearest->x(), 1.0, 0.0), jets::Gradient(nearest->y(), 0.0, 1.0));
+  return {*nearest, z.value, {z.x, z.y}};
 }
 
 void PatchSurface::make_slabs() {
@@ -103,10 +134,6 @@ std::size_t PatchSurface::face_at(const Vec2& point_mm) const {
   if (right_face == slab.end()) return static_cast<std::size_t>(left_face->face);
   const double to_left = point_mm.x() - x_of(*(right - 1));
   return static_cast<std::size_t>(to_left <= x_of(*right_face) - point_mm.x() ? left_face->face : right_face->face);
-}
-
-const HeightPatch* PatchSurface::patch_at(const Vec2& point_mm) const {
-  return faces_[face_at(point_mm)].patch_at(point_mm);
 }
 
 bool PatchSurface::covers(const Vec2& point_mm, double tolerance_mm) const {

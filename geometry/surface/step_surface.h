@@ -2,6 +2,7 @@
 
 // Surfaces that were read from STEP files.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct TangentBreak {
   double angle_deg = 0.0;          ///< maximum angle between the normals along the edge
   Vec3 at_mm = Vec3::Zero();  ///< position of this maximum in the frame of the file
 };
+
+/// Returns the distance by which patches continue beyond the border of their face.
+/// \param size_mm size of the bounding box of all faces
+inline double step_margin_mm(const Vec2& size_mm) {
+  return std::max(1e-3 * size_mm.maxCoeff(), 0.02);
+}
 
 /// Surface that was read from a STEP file.
 struct StepSurface {

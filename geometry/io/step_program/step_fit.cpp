@@ -572,7 +572,7 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
       if (PatchSurface({PatchTree{}}, {fitted.patches.borders[k]}).covers(centre, 1e-3))
         if (const std::optional<FaceHeight> height = faces[k].at(centre)) fitted.origin_mm.z() = height->z_mm;
   }
-  const double margin_mm = std::max(1e-3 * size_mm, 0.02);
+  const double margin_mm = step_margin_mm(fitted.size_mm);
   std::size_t patches = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     TreeMaker maker(faces[k], fitted.patches.borders[k], fitted.origin_mm, margin_mm, size_mm);
