@@ -19,8 +19,8 @@
 #include <numbers>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 
+#include "geometry/io/step_program/step_refusal.h"
 #include "geometry/io/step_reader.h"
 
 namespace retrace::geometry {
@@ -34,10 +34,6 @@ constexpr double kArcsecPerRad = 206264.80624709636;
 constexpr int kNodes = kPatchDegree + 1;
 constexpr std::size_t kMaxPatches = 20000;
 
-[[noreturn]] void refuse(const std::string& text) {
-  throw std::runtime_error(text);
-}
-
 std::string place_of(const Vec2& p) {
   std::ostringstream text;
   text.precision(6);
@@ -46,7 +42,7 @@ std::string place_of(const Vec2& p) {
 }
 
 [[noreturn]] void refuse_fold(const Vec2& p) {
-  refuse("must have a face with one height above each point, but it folds or is vertical near " + place_of(p) +
+  refuse_step("must have a face with one height above each point, but it folds or is vertical near " + place_of(p) +
          " of the rotated file: choose another face, or set rotation_deg so that +z points to the light");
 }
 
@@ -75,7 +71,7 @@ class FaceHeights {
       : surface_(BRep_Tool::Surface(face)), adaptor_(surface_), border_(face, Precision::PConfusion()) {
     BRepTools::UVBounds(face, low_.x(), high_.x(), low_.y(), high_.y());
     if (!low_.allFinite() || !high_.allFinite() || low_.cwiseAbs().maxCoeff() > 1e9 || high_.cwiseAbs().maxCoeff() > 1e9)
-      refuse("must have faces of finite size");
+      refuse_step("must have faces of finite size");
     surface_->Bounds(natural_low_.x(), natural_high_.x(), natural_low_.y(), natural_high_.y());
     is_periodic_ = {surface_->IsUPeriodic() == Standard_True, surface_->IsVPeriodic() == Standard_True};
     sample();
@@ -133,7 +129,7 @@ class FaceHeights {
       for (int i = 0; i < u_steps; ++i) {
         const std::optional<FacePoint> p = point_at((i + 0.5) / u_steps, (j + 0.5) / v_steps);
         if (!p) continue;
-        if (!p->position.allFinite()) refuse("must have faces of finite size");
+        if (!p->position.allFinite()) refuse_step("must have faces of finite size");
         if (p->normal.z() < kMinUpwards) refuse_fold(p->position.head<2>());
         gp_Pnt position;
         gp_Vec du;
@@ -143,7 +139,7 @@ class FaceHeights {
         if (upwards > 0 && downwards > 0) refuse_fold(p->position.head<2>());
         samples_.push_back(*p);
       }
-    if (samples_.empty()) refuse("must have faces of a size above 0");
+    if (samples_.empty()) refuse_step("must have faces of a size above 0");
   }
 
   /// Sorts the samples into square cells in plan.
@@ -349,7 +345,7 @@ class TreeMaker {
         high = high.cwiseMax(loop[k]);
         sides.push_back({loop[k], loop[(k + 1) % loop.size()]});
       }
-    if (sides.empty()) refuse("must have faces with a border");
+    if (sides.empty()) refuse_step("must have faces with a border");
     low.array() -= margin_mm_;
     high.array() += margin_mm_;
     tree_.nodes.emplace_back();
@@ -399,7 +395,7 @@ class TreeMaker {
     if (fit(cell, axis)) {
       tree_.nodes[node].first = static_cast<std::uint32_t>(tree_.patches.size() - 1);
       if (others_ + tree_.patches.size() > kMaxPatches)
-        refuse("must have smoother faces: more than " + std::to_string(kMaxPatches) +
+        refuse_step("must have smoother faces: more than " + std::to_string(kMaxPatches) +
                " polynomials are needed to approximate them within 1 nm and 0.1 arcsec");
       return;
     }
@@ -407,7 +403,7 @@ class TreeMaker {
     if (cell.half.minCoeff() < kMinSize * size_mm_) {
       const std::optional<FaceHeight> height = face_.at(cell.centre);
       if (!height) refuse_fold(cell.centre);
-      refuse("must have smooth faces, but no polynomial approximates the face within 1 nm and 0.1 arcsec near " +
+      refuse_step("must have smooth faces, but no polynomial approximates the face within 1 nm and 0.1 arcsec near " +
              place_of(cell.centre) + " of the rotated file");
     }
     const auto first = static_cast<std::uint32_t>(tree_.nodes.size());
@@ -560,7 +556,7 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
     std::ostringstream text;
     text << "must have faces of 0.001 mm to 100000 mm, but they are " << size_mm << " mm large: check its unit, which is "
          << chosen.unit;
-    refuse(text.str());
+    refuse_step(text.str());
   }
   if (choice.origin_mm) {
     const std::array<double, 3>& o = *choice.origin_mm;
@@ -584,7 +580,7 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
     std::ostringstream text;
     text << "must have smooth faces, but their approximation differs by " << 1e6 * fitted.deviation_mm << " nm and "
          << fitted.deviation_arcsec << " arcsec (allowed: 1 nm, 0.1 arcsec)";
-    refuse(text.str());
+    refuse_step(text.str());
   }
   for (FaceBorder& border : fitted.patches.borders)
     for (std::vector<Vec2>& loop : border)

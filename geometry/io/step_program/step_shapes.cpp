@@ -18,6 +18,7 @@
 #include <Quantity_Color.hxx>
 #include <STEPConstruct_Styles.hxx>
 #include <STEPControl_Reader.hxx>
+#include <ShapeUpgrade_ShapeDivideContinuity.hxx>
 #include <StepShape_Face.hxx>
 #include <StepVisual_StyledItem.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
@@ -46,7 +47,8 @@
 #include <numeric>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
+
+#include "geometry/io/step_program/step_refusal.h"
 
 namespace retrace::geometry {
 namespace {
@@ -55,10 +57,6 @@ constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 /// Angle between normals below which an edge counts as smooth.
 constexpr double kSmoothDeg = 0.01;
 constexpr double kRoundingMm = 1e-6;
-
-[[noreturn]] void refuse(const std::string& text) {
-  throw std::runtime_error(text);
-}
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -81,19 +79,19 @@ std::size_t count_of(std::string_view text, std::string_view word) {
 /// Checks the text of a STEP file before OpenCASCADE reads it, because OpenCASCADE accepts truncated files.
 void check_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse("must be readable, but it cannot be opened");
+  if (!stream) refuse_step("must be readable, but it cannot be opened");
   std::ostringstream content;
   content << stream.rdbuf();
   const std::string text = std::move(content).str();
   if (text.substr(0, 1024).find("ISO-10303-21;") == std::string::npos)
-    refuse("must be a STEP file, which begins with ISO-10303-21");
+    refuse_step("must be a STEP file, which begins with ISO-10303-21");
   constexpr std::size_t kEndBytes = 65536;
   if (text.find("END-ISO-10303-21", text.size() < kEndBytes ? 0 : text.size() - kEndBytes) == std::string::npos)
-    refuse("is truncated: END-ISO-10303-21 is missing at its end");
+    refuse_step("is truncated: END-ISO-10303-21 is missing at its end");
   const std::size_t faces = count_of(text, "ADVANCED_FACE") + count_of(text, "FACE_SURFACE");
-  if (faces == 0) refuse("must contain faces, but has none");
+  if (faces == 0) refuse_step("must contain faces, but has none");
   if (faces > kMaxStepFaces)
-    refuse("must have at most " + std::to_string(kMaxStepFaces) + " faces, but has " + std::to_string(faces));
+    refuse_step("must have at most " + std::to_string(kMaxStepFaces) + " faces, but has " + std::to_string(faces));
 }
 
 /// Face of the file with the properties by which designs select it.
@@ -169,18 +167,18 @@ class StepContents {
     check_text(choice.file);
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
     if (reader_.ReadFile(choice.file.c_str()) != IFSelect_RetDone)
-      refuse("must be a STEP file, but it cannot be understood");
+      refuse_step("must be a STEP file, but it cannot be understood");
     find_unit();
     reader_.TransferRoots();
     gp_Trsf rotation;
     const Eigen::Matrix3d r = geometry::rotation_of(choice);
     rotation.SetValues(r(0, 0), r(0, 1), r(0, 2), 0.0, r(1, 0), r(1, 1), r(1, 2), 0.0, r(2, 0), r(2, 1), r(2, 2), 0.0);
     const TopoDS_Shape shape = reader_.OneShape();
-    if (shape.IsNull()) refuse("must contain faces, but OpenCASCADE finds none");
+    if (shape.IsNull()) refuse_step("must contain faces, but OpenCASCADE finds none");
     shape_ = shape.Moved(TopLoc_Location(rotation));
     find_candidates();
     find_colours();
-    if (candidates_.empty()) refuse("must contain faces, but OpenCASCADE finds none");
+    if (candidates_.empty()) refuse_step("must contain faces, but OpenCASCADE finds none");
   }
 
   const std::vector<Candidate>& candidates() const { return candidates_; }
@@ -194,7 +192,7 @@ class StepContents {
       const std::string name = lengths.Value(k).ToCString();
       if (unit_.find(name) == std::string::npos) unit_ += (unit_.empty() ? "" : ", ") + name;
     }
-    if (unit_.empty()) refuse("must give its unit of length, but has none");
+    if (unit_.empty()) refuse_step("must give its unit of length, but has none");
   }
 
   void find_candidates() {
@@ -275,7 +273,7 @@ std::vector<TopoDS_Face> largest_of(const std::vector<Candidate>& candidates) {
     area = own;
     largest = &candidate;
   }
-  if (largest == nullptr) refuse("must have a face that faces +z after the rotation, but has none");
+  if (largest == nullptr) refuse_step("must have a face that is larger than 0 and faces +z after the rotation, but has none");
   return {largest->face};
 }
 
@@ -300,12 +298,25 @@ std::vector<TopoDS_Face> selected(std::vector<Candidate> candidates, const std::
   else if (word.starts_with('#'))
     choose([&](const Candidate& candidate) { return candidate.colour == lower_case(word); });
   if (!faces.empty()) return faces;
-  refuse("has no face \"" + word + "\" among its " + std::to_string(candidates.size()) +
+  refuse_step("has no face \"" + word + "\" among its " + std::to_string(candidates.size()) +
          " faces: give a name, a colour such as \"#ff0000\", a number from 1 on, \"largest\" or \"towards +z\"");
 }
 
+/// Divides a face at lines where its curvature or slope changes abruptly. Polynomials do not converge at such lines.
+void add_smooth_parts(const TopoDS_Face& face, std::vector<TopoDS_Face>& parts) {
+  ShapeUpgrade_ShapeDivideContinuity division(face);
+  division.SetSurfaceCriterion(GeomAbs_C2);
+  division.SetBoundaryCriterion(GeomAbs_C0);
+  division.SetPCurveCriterion(GeomAbs_C0);
+  const TopoDS_Shape all = division.Perform() ? division.Result() : TopoDS_Shape(face);
+  for (TopExp_Explorer part(all, TopAbs_FACE); part.More(); part.Next())
+    parts.push_back(TopoDS::Face(part.Current()));
+}
+
 /// Returns the faces after sewing them together.
-std::vector<TopoDS_Face> sewn(const std::vector<TopoDS_Face>& faces, double sew_mm) {
+std::vector<TopoDS_Face> sewn(const std::vector<TopoDS_Face>& whole_faces, double sew_mm) {
+  std::vector<TopoDS_Face> faces;
+  for (const TopoDS_Face& face : whole_faces) add_smooth_parts(face, faces);
   if (faces.size() == 1) return faces;
   BRepBuilderAPI_Sewing sewing(sew_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);
@@ -339,7 +350,7 @@ void check_connected(const ChosenFaces& chosen, double sew_mm) {
   int pieces = 0;
   for (int k = 1; k <= numbers.Extent(); ++k) pieces += root(k) == k ? 1 : 0;
   if (pieces > 1)
-    refuse("must be one connected surface, but the " + std::to_string(chosen.faces.size()) + " chosen faces form " +
+    refuse_step("must be one connected surface, but the " + std::to_string(chosen.faces.size()) + " chosen faces form " +
            std::to_string(pieces) + " separate pieces: choose other faces, or increase sew_mm (" + text_of(sew_mm) +
            ") if there are gaps between them");
 }
@@ -354,7 +365,7 @@ struct EdgeCurve {
 
   explicit EdgeCurve(const TopoDS_Edge& edge) : curve(edge), first(curve.FirstParameter()), last(curve.LastParameter()) {
     if (!std::isfinite(first) || !std::isfinite(last) || std::abs(first) > 1e9 || std::abs(last) > 1e9)
-      refuse("must have edges of finite length");
+      refuse_step("must have edges of finite length");
     // Neighbouring edges share vertices. Their curves may end a small distance from them.
     const TopoDS_Vertex from = TopExp::FirstVertex(edge);
     const TopoDS_Vertex to = TopExp::LastVertex(edge);
@@ -510,12 +521,12 @@ ChosenFaces choose_faces(const StepChoice& choice) {
   ChosenFaces chosen;
   chosen.unit = contents.unit();
   chosen.faces = sewn(selected(contents.candidates(), choice.face), choice.sew_mm);
-  if (chosen.faces.empty()) refuse("must have faces that are larger than sew_mm");
+  if (chosen.faces.empty()) refuse_step("must have faces that are larger than sew_mm");
   BRep_Builder builder;
   TopoDS_Compound all;
   builder.MakeCompound(all);
   for (const TopoDS_Face& face : chosen.faces) {
-    if (BRep_Tool::Surface(face).IsNull()) refuse("must have a surface for each face");
+    if (BRep_Tool::Surface(face).IsNull()) refuse_step("must have a surface for each face");
     builder.Add(all, face);
   }
   TopExp::MapShapesAndUniqueAncestors(all, TopAbs_EDGE, TopAbs_FACE, chosen.faces_of_edge);
@@ -550,7 +561,7 @@ std::vector<OutlineLoop> loops_around(const ChosenFaces& chosen, double sew_mm) 
         return distance(a) < distance(b);
       });
       if (next == pieces.end() || distance(*next) > tolerance_mm)
-        refuse("must have faces with a closed border, but the border has a gap at x = " + text_of(end.x()) +
+        refuse_step("must have faces with a closed border, but the border has a gap at x = " + text_of(end.x()) +
                ", y = " + text_of(end.y()) + " mm");
       OutlineLoop piece = (next->front().from_mm - end).norm() <= (next->back().to_mm - end).norm()
                               ? *next
@@ -562,7 +573,7 @@ std::vector<OutlineLoop> loops_around(const ChosenFaces& chosen, double sew_mm) 
     loop.back().to_mm = loop.front().from_mm;
     loops.push_back(std::move(loop));
   }
-  if (loops.empty()) refuse("must have faces with a border");
+  if (loops.empty()) refuse_step("must have faces with a border");
   return loops;
 }
 
