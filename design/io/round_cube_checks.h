@@ -16,7 +16,7 @@ inline constexpr std::string_view kRoundLengthKeys[] = {"element.length_mm", "el
 inline constexpr std::string_view kRoundFaceKeys[] = {
     "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
     "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
-    "outline.polygon_mm",     "outline.dxf"};
+    "outline.polygon_mm",     "outline.dxf",        "outline.file"};
 /// Keys of check_hollow(). The kRefusedKeysOfHollow keys after the first are not allowed for hollow cube corners.
 inline constexpr std::string_view kHollowKeys[] = {
     "element.hollow",      "body.material",          "body.catalogue",   "body.refractive_index",
