@@ -27,10 +27,21 @@ constexpr int kFirstAngle = 5;
 constexpr int kFirstCoordinate = 8;
 constexpr int kLast = 11;
 
-/// Limits the memory and the processor time of this process.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RETRACE_STEP_IS_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(RETRACE_STEP_IS_SANITIZED)
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+/// Limits the memory and the processor time of this process. Sanitizers reserve more addresses than the limit.
 void limit_resources() {
   const rlimit memory{kMaxStepMemoryBytes, kMaxStepMemoryBytes};
-  ::setrlimit(RLIMIT_AS, &memory);
+  if (!kIsSanitized) ::setrlimit(RLIMIT_AS, &memory);
   const auto seconds = static_cast<rlim_t>(kMaxStepSeconds);
   const rlimit time{seconds, seconds + 1};
   ::setrlimit(RLIMIT_CPU, &time);
