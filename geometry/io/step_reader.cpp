@@ -35,8 +35,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::string_view kProgram = "retrace_step_reader";
 constexpr std::size_t kMaxMessageBytes = 400;
-/// Maximum length of a result. The memory limit of the program bounds its results as well.
-constexpr std::size_t kMaxResultBytes = kMaxStepMemoryBytes / 2;
+/// Maximum length of a result.
+constexpr std::size_t kMaxResultBytes = std::size_t{64} << 20;
+/// Maximum time from start to end. On a machine with other work, it is longer than the processor time.
+constexpr std::chrono::seconds kMaxWait{60};
 
 /// End of a pipe, which is closed automatically.
 class Descriptor {
@@ -79,7 +81,8 @@ class ChildProcess {
   pid_t id_;
 };
 
-/// Starts a program whose standard output is `output`. Its other streams are /dev/null.
+/// Starts a program whose standard output is `output`. Its other streams are /dev/null. It does not receive signals of
+/// the terminal, because this program handles interrupts itself.
 ChildProcess started(const fs::path& program, std::vector<std::string> words, const Descriptor& output) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -89,8 +92,12 @@ ChildProcess started(const fs::path& program, std::vector<std::string> words, co
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_adddup2(&actions, output.number(), STDOUT_FILENO);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   pid_t id = -1;
-  const int fault = ::posix_spawn(&id, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int fault = ::posix_spawn(&id, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (fault != 0)
     throw InputError(fmt::format("cannot be read, because the program {} cannot be started: {}", program.string(),
@@ -140,7 +147,7 @@ std::string result_of_program(const StepChoice& choice, std::string_view kind) {
     throw InputError(fmt::format("cannot be read: {}", std::generic_category().message(errno)));
   const Descriptor from_program(ends[0]);
   Descriptor to_parent(ends[1]);
-  const Clock::time_point end = Clock::now() + std::chrono::milliseconds(static_cast<int>(1000.0 * kMaxStepSeconds));
+  const Clock::time_point end = Clock::now() + kMaxWait;
   ChildProcess process = started(program, std::move(words), to_parent);
   to_parent.close();
   std::string result = read_pipe(from_program, end);
@@ -231,9 +238,11 @@ auto converted(const StepChoice& choice, std::string_view kind, StepResult expec
 
 /// Text that differs for files and selections with different results.
 std::string identity_of(const StepChoice& choice) {
-  const auto time = fs::last_write_time(choice.file).time_since_epoch().count();
-  std::string identity = fmt::format("{}\n{}\n{}\n{}\n{}", fs::absolute(choice.file).string(), time,
-                                     fs::file_size(choice.file), choice.face, shortest(choice.sew_mm));
+  std::error_code ignored;
+  const auto time = fs::last_write_time(choice.file, ignored).time_since_epoch().count();
+  std::string identity =
+      fmt::format("{}\n{}\n{}\n{}\n{}", fs::absolute(choice.file, ignored).string(), time,
+                  fs::file_size(choice.file, ignored), choice.face, shortest(choice.sew_mm));
   for (const double angle : choice.rotation_deg) identity += "\n" + shortest(angle);
   if (choice.origin_mm)
     for (const double c : *choice.origin_mm) identity += "\n" + shortest(c);

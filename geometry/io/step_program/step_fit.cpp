@@ -58,6 +58,7 @@ struct FacePoint {
   double v = 0.0;
   Vec3 position = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();  ///< unit normal that points upwards
+  bool is_along_surface = true;  ///< true if the normal is that of the surface, false if it is the opposite
 };
 
 Vec3 vector_of(const gp_XYZ& p) {
@@ -67,12 +68,17 @@ Vec3 vector_of(const gp_XYZ& p) {
 /// Face as a function z(x, y). The function continues beyond the border of the face.
 class FaceHeights {
  public:
-  explicit FaceHeights(const TopoDS_Face& face)
-      : surface_(BRep_Tool::Surface(face)), adaptor_(surface_), border_(face, Precision::PConfusion()) {
+  /// \param border border of the face in plan
+  FaceHeights(const TopoDS_Face& face, const FaceBorder& border)
+      : surface_(BRep_Tool::Surface(face)),
+        adaptor_(surface_),
+        border_(face, Precision::PConfusion()),
+        border_in_plan_({PatchTree{}}, {border}) {
     BRepTools::UVBounds(face, low_.x(), high_.x(), low_.y(), high_.y());
     if (!low_.allFinite() || !high_.allFinite() || low_.cwiseAbs().maxCoeff() > 1e9 || high_.cwiseAbs().maxCoeff() > 1e9)
       refuse_step("must have faces of finite size");
     surface_->Bounds(natural_low_.x(), natural_high_.x(), natural_low_.y(), natural_high_.y());
+    find_range();
     is_periodic_ = {surface_->IsUPeriodic() == Standard_True, surface_->IsVPeriodic() == Standard_True};
     sample();
     sort_samples();
@@ -82,8 +88,13 @@ class FaceHeights {
   std::optional<FacePoint> point_at(double u_fraction, double v_fraction) {
     const double u = low_.x() + u_fraction * (high_.x() - low_.x());
     const double v = low_.y() + v_fraction * (high_.y() - low_.y());
-    if (border_.Perform(gp_Pnt2d(u, v)) == TopAbs_OUT) return std::nullopt;
-    return point_of(u, v);
+    if (has_range_ && border_.Perform(gp_Pnt2d(u, v)) == TopAbs_OUT) return std::nullopt;
+    const std::optional<FacePoint> point = point_of(u, v);
+    if (has_range_ || !point) return point;
+    // The whole surface may have other points above the face.
+    const bool is_of_face = border_in_plan_.covers(point->position.head<2>(), 0.0) &&
+                            (samples_.empty() || point->is_along_surface == samples_.front().is_along_surface);
+    return is_of_face ? point : std::nullopt;
   }
 
   std::size_t sample_count() const { return samples_.size(); }
@@ -115,7 +126,30 @@ class FaceHeights {
     // At a pole, the parameters do not determine the normal.
     if (!(normal.Magnitude() > 1e-12 * du.Magnitude() * dv.Magnitude()) || !(du.Magnitude() > 0.0)) return std::nullopt;
     const Vec3 n = vector_of(normal.XYZ()) / normal.Magnitude();
-    return FacePoint{u, v, vector_of(p.XYZ()), n.z() < 0.0 ? Vec3(-n) : n};
+    return FacePoint{u, v, vector_of(p.XYZ()), n.z() < 0.0 ? Vec3(-n) : n, n.z() >= 0.0};
+  }
+
+  /// Finds out whether the border of the face encloses it in the plane of the parameters. A border around a pole, such as
+  /// the vertex of a surface of revolution, may not do so. The whole surface is then searched for points of the face.
+  void find_range() {
+    constexpr int kSteps = 16;
+    constexpr double kMaxOutside = 0.02;
+    int inside = 0;
+    int outside_in_plan = 0;
+    const double tolerance_mm = 1e-2;
+    for (int j = 0; j < kSteps; ++j)
+      for (int i = 0; i < kSteps; ++i) {
+        const std::optional<FacePoint> point = point_at((i + 0.5) / kSteps, (j + 0.5) / kSteps);
+        if (!point) continue;
+        ++inside;
+        if (!border_in_plan_.covers(point->position.head<2>(), tolerance_mm)) ++outside_in_plan;
+      }
+    constexpr double kInfinite = 1e50;
+    const bool is_finite = natural_low_.cwiseAbs().maxCoeff() < kInfinite && natural_high_.cwiseAbs().maxCoeff() < kInfinite;
+    has_range_ = !is_finite || (inside > 0 && outside_in_plan <= kMaxOutside * inside);
+    if (has_range_) return;
+    low_ = natural_low_;
+    high_ = natural_high_;
   }
 
   void sample() {
@@ -123,20 +157,14 @@ class FaceHeights {
     constexpr int kMaxSteps = 160;
     const int u_steps = std::clamp(4 * adaptor_.NbUIntervals(GeomAbs_CN), kMinSteps, kMaxSteps);
     const int v_steps = std::clamp(4 * adaptor_.NbVIntervals(GeomAbs_CN), kMinSteps, kMaxSteps);
-    int upwards = 0;
-    int downwards = 0;
     for (int j = 0; j < v_steps; ++j)
       for (int i = 0; i < u_steps; ++i) {
         const std::optional<FacePoint> p = point_at((i + 0.5) / u_steps, (j + 0.5) / v_steps);
         if (!p) continue;
         if (!p->position.allFinite()) refuse_step("must have faces of finite size");
         if (p->normal.z() < kMinUpwards) refuse_fold(p->position.head<2>());
-        gp_Pnt position;
-        gp_Vec du;
-        gp_Vec dv;
-        adaptor_.D1(p->u, p->v, position, du, dv);
-        (du.Crossed(dv).Z() > 0.0 ? upwards : downwards) += 1;
-        if (upwards > 0 && downwards > 0) refuse_fold(p->position.head<2>());
+        if (!samples_.empty() && p->is_along_surface != samples_.front().is_along_surface)
+          refuse_fold(p->position.head<2>());
         samples_.push_back(*p);
       }
     if (samples_.empty()) refuse_step("must have faces of a size above 0");
@@ -290,6 +318,8 @@ class FaceHeights {
   Handle(Geom_Surface) surface_;
   GeomAdaptor_Surface adaptor_;
   BRepTopAdaptor_FClass2d border_;
+  PatchSurface border_in_plan_;
+  bool has_range_ = true;  ///< true if the border encloses the face in the plane of the parameters
   Vec2 low_ = Vec2::Zero();  ///< range of parameters of the face
   Vec2 high_ = Vec2::Zero();
   Vec2 natural_low_ = Vec2::Zero();  ///< range of parameters of the surface
@@ -545,10 +575,11 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
   // The polygon of a single face is used only to find out which cells the face covers. At edges between faces, it
   // determines the position of the edge.
   const double border_mm = chosen.faces.size() == 1 ? 1e-3 : 5e-7;
-  std::deque<FaceHeights> faces;
-  for (const TopoDS_Face& face : chosen.faces) faces.emplace_back(face);
   FittedFaces fitted;
   fitted.patches.borders = borders_of(chosen, border_mm);
+  std::deque<FaceHeights> faces;
+  for (std::size_t k = 0; k < chosen.faces.size(); ++k)
+    faces.emplace_back(chosen.faces[k], fitted.patches.borders[k]);
   const PlanBox box = box_of(loops_around(chosen, choice.sew_mm));
   fitted.size_mm = box.high - box.low;
   const double size_mm = fitted.size_mm.maxCoeff();

@@ -122,6 +122,36 @@ TEST_F(StepFaces, AreWithinANanometreOfTheirClosedForms) {
     }
 }
 
+// The vertex of a surface of revolution is a pole of its parameters. The border of the face is a rectangle around it.
+TEST_F(StepFaces, VertexOfASurfaceOfRevolutionIsSmooth) {
+  write_step(folder_, "lens.step", R"(
+triples = [(0, 0, 0), (0, 0, 30), (0, 30, 30), (30, 30, 30)]
+points = [s.point((sum(t) / 3, 0, -(t[0] * t[1] + t[1] * t[2] + t[2] * t[0]) / 1200)) for t in triples]
+numbers = ','.join(f'#{number}' for number in points)
+curve = s.write(f"B_SPLINE_CURVE_WITH_KNOTS('',3,({numbers}),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),.UNSPECIFIED.)")
+axis = s.write(f"AXIS1_PLACEMENT('',#{s.point((0, 0, 0))},#{s.direction((0, 0, 1))})")
+surface = s.write(f"SURFACE_OF_REVOLUTION('',#{curve},#{axis})")
+paraboloid = w.Height(lambda x, y: -(x * x + y * y) / 400, lambda x, y: (-x / 200, -y / 200))
+w.face_over(s, surface, paraboloid, w.rectangle(w.LOW, w.HIGH)))");
+  const geometry::StepSurface surface = surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}});
+  for (const Vec2& p : {Vec2(0, 0), Vec2(1e-7, 0), Vec2(-3, 2), Vec2(19, -14)}) {
+    const jets::Gradient z = surface.patches.evaluate(jets::Gradient(p.x(), 1.0, 0.0), jets::Gradient(p.y(), 0.0, 1.0));
+    EXPECT_NEAR(z.value, -p.squaredNorm() / 400, 1e-9);
+    EXPECT_NEAR(z.x, -p.x() / 200, 1e-9);
+    EXPECT_NEAR(z.y, -p.y() / 200, 1e-9);
+  }
+}
+
+TEST_F(StepFaces, OfAllApplicationProtocolsAreRead) {
+  write_step(folder_, "ap214.step", "w.sphere(s)");
+  const std::string ap214 = folder_.read("ap214.step");
+  const std::string schema = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }";
+  for (const std::string other : {"CONFIG_CONTROL_DESIGN", "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"}) {
+    folder_.write("lens.step", with_replaced(ap214, schema, other));
+    EXPECT_NEAR(surface_of({}).size_mm.x(), 40.0, 1e-9) << other;
+  }
+}
+
 TEST_F(StepFaces, UnitsAreReadFromTheFile) {
   write_step(folder_, "lens.step", "w.sphere(s)");
   const geometry::StepSurface in_mm = surface_of({});
