@@ -16,8 +16,8 @@ using geometry::Vec2, geometry::Vec3;
 
 namespace {
 
-/// Returns the size of the smallest features of a shape, or infinity if it is unknown. At an edge between two faces, the
-/// curvature is infinite, and a search for the size would not end.
+/// Returns the size of the smallest features of a shape, or infinity if it is unknown. At an edge between two faces,
+/// the curvature is infinite, and a search for the size would not end.
 double finest_mm(const geometry::EntranceShape& shape) {
   constexpr double kFeaturesAcross = 16.0;
   const auto* const face = std::get_if<geometry::StepFace>(&shape);

@@ -35,8 +35,7 @@ void check_cover(const geometry::StepFace& face, const geometry::EntranceSurface
 geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Part& part, const Vec3& origin_mm) {
   auto surface = surface_of(form, origin_mm);
   geometry::check_folds(*surface, part.outline);
-  if (const auto* const face = std::get_if<geometry::StepFace>(&form.shape))
-    check_cover(*face, *surface, part.outline);
+  if (const auto* const face = std::get_if<geometry::StepFace>(&form.shape)) check_cover(*face, *surface, part.outline);
   return surface;
 }
 

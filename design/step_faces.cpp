@@ -21,10 +21,9 @@ void read_face(const Design& design, geometry::StepFace& face, std::string_view 
 /// Checks that the face of a substrate covers the array.
 void check_cover(const geometry::StepFace& face, const geometry::ArrayLayout& array) {
   const geometry::Vec2 half_mm = 0.5 * geometry::Vec2(array.x_length_mm, array.y_length_mm);
-  const geometry::Polygon outline = array.outline ? array.outline->hull
-                                                  : geometry::to_polygon({geometry::Vec2::Zero(), 2.0 * half_mm});
-  for (const geometry::Vec2& corner : outline)
-    require_cover(face, corner - half_mm, corner);
+  const geometry::Polygon outline =
+      array.outline ? array.outline->hull : geometry::to_polygon({geometry::Vec2::Zero(), 2.0 * half_mm});
+  for (const geometry::Vec2& corner : outline) require_cover(face, corner - half_mm, corner);
 }
 
 }  // namespace
@@ -32,11 +31,11 @@ void check_cover(const geometry::StepFace& face, const geometry::ArrayLayout& ar
 void require_cover(const geometry::StepFace& face, const geometry::Vec2& at_mm, const geometry::Vec2& point_mm) {
   const geometry::Vec2& size_mm = face.surface->size_mm;
   if (face.surface->patches.covers(at_mm, geometry::step_margin_mm(size_mm))) return;
-  throw InputError({face.choice.file.string(), 0, ""},
-                   fmt::format("must have faces that cover the whole part, but they do not cover x = {}, y = {} mm of "
-                               "the part: they are {} x {} mm large",
-                               fixed(point_mm.x(), 4), fixed(point_mm.y(), 4), fixed(size_mm.x(), 4),
-                               fixed(size_mm.y(), 4)));
+  throw InputError(
+      {face.choice.file.string(), 0, ""},
+      fmt::format("must have faces that cover the whole part, but they do not cover x = {}, y = {} mm of "
+                  "the part: they are {} x {} mm large",
+                  fixed(point_mm.x(), 4), fixed(point_mm.y(), 4), fixed(size_mm.x(), 4), fixed(size_mm.y(), 4)));
 }
 
 void read_step_faces(Design& design) {

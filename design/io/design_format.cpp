@@ -78,8 +78,9 @@ constexpr Condition kWithZones[] = {kNoMesh,
 constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
 constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf", "file"};
-constexpr Rule kOutlineRules[] = {OneOf{
-    kOutlineBorders, "must contain exactly one of the keys polygon_mm, circle_mm, dxf and file, which determine its border"}};
+constexpr Rule kOutlineRules[] = {
+    OneOf{kOutlineBorders,
+          "must contain exactly one of the keys polygon_mm, circle_mm, dxf and file, which determine its border"}};
 constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
                                                "columns",       "mask",          "rest"};
 constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,

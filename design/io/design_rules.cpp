@@ -390,9 +390,9 @@ void check_form(const Document& document) {
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
-constexpr schema::Words kOutlineKeys = {"outline.polygon_mm",      "outline.circle_mm",        "outline.dxf", "outline.file",
-                                        "outline.side_sagitta_mm", "outline.corner_radius_mm", "outline.holes_mm",
-                                        "outline.margin_mm",       "outline.tolerance_mm"};
+constexpr schema::Words kOutlineKeys = {"outline.polygon_mm", "outline.circle_mm",       "outline.dxf",
+                                        "outline.file",       "outline.side_sagitta_mm", "outline.corner_radius_mm",
+                                        "outline.holes_mm",   "outline.margin_mm",       "outline.tolerance_mm"};
 constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
                                                  "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralErrorArcmin, kDihedralErrorArcsec};

@@ -13,10 +13,17 @@ namespace retrace::design {
 /// Keys of check_length_of_round_cube().
 inline constexpr std::string_view kRoundLengthKeys[] = {"element.length_mm", "element.edge_length_mm"};
 /// Keys of check_face_of_round_cube().
-inline constexpr std::string_view kRoundFaceKeys[] = {
-    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
-    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
-    "outline.polygon_mm",     "outline.dxf",        "outline.file"};
+inline constexpr std::string_view kRoundFaceKeys[] = {"element.chamfer_mm",
+                                                      "element.recess_mm",
+                                                      "element.mount_diameter_mm",
+                                                      "surface.rim_radius_um",
+                                                      "surface.rim_chamfer_um",
+                                                      "part.facets",
+                                                      "outline.margin_mm",
+                                                      "outline.holes_mm",
+                                                      "outline.polygon_mm",
+                                                      "outline.dxf",
+                                                      "outline.file"};
 /// Keys of check_hollow(). The kRefusedKeysOfHollow keys after the first are not allowed for hollow cube corners.
 inline constexpr std::string_view kHollowKeys[] = {
     "element.hollow",      "body.material",          "body.catalogue",   "body.refractive_index",

@@ -106,9 +106,10 @@ ChildProcess started(const fs::path& program, std::vector<std::string> words, co
 }
 
 [[noreturn]] void refuse_slow() {
-  throw InputError(fmt::format("must be readable within {} s, but reading takes longer: export fewer faces from the CAD "
-                               "program",
-                               shortest(kMaxStepSeconds)));
+  throw InputError(
+      fmt::format("must be readable within {} s, but reading takes longer: export fewer faces from the CAD "
+                  "program",
+                  shortest(kMaxStepSeconds)));
 }
 
 /// Reads a pipe up to its end.
@@ -135,8 +136,8 @@ std::string result_of_program(const StepChoice& choice, std::string_view kind) {
   const fs::path program = installation_folder() / "lib" / "retrace" / kProgram;
   std::error_code ignored;
   if (!fs::exists(program, ignored))
-    throw InputError(fmt::format("cannot be read, because retrace was built without OpenCASCADE: {} is missing",
-                                 program.string()));
+    throw InputError(
+        fmt::format("cannot be read, because retrace was built without OpenCASCADE: {} is missing", program.string()));
   std::vector<std::string> words = {std::string(kProgram), std::string(kind), choice.file.string(), choice.face,
                                     shortest(choice.sew_mm)};
   for (const double angle : choice.rotation_deg) words.push_back(shortest(angle));
@@ -156,7 +157,8 @@ std::string result_of_program(const StepChoice& choice, std::string_view kind) {
   if (WIFSIGNALED(status))
     throw InputError(fmt::format("cannot be read: OpenCASCADE ended with the signal {}", WTERMSIG(status)));
   if (WEXITSTATUS(status) != 0)
-    throw InputError("cannot be read: OpenCASCADE or its Debian package libocct-data-exchange-7.6 is missing or damaged");
+    throw InputError(
+        "cannot be read: OpenCASCADE or its Debian package libocct-data-exchange-7.6 is missing or damaged");
   return result;
 }
 
@@ -190,8 +192,7 @@ PatchTree tree_of(StepMessageReader& reader) {
 StepSurface surface_of_result(StepMessageReader& reader) {
   std::vector<PatchTree> faces = reader.list<PatchTree>([&] { return tree_of(reader); });
   const auto loop = [&] { return reader.list<Vec2>([&] { return reader.point(); }); };
-  std::vector<FaceBorder> borders =
-      reader.list<FaceBorder>([&] { return reader.list<std::vector<Vec2>>(loop); });
+  std::vector<FaceBorder> borders = reader.list<FaceBorder>([&] { return reader.list<std::vector<Vec2>>(loop); });
   if (faces.empty() || faces.size() != borders.size()) StepMessageReader::fail();
   StepSurface surface{.patches = PatchSurface(std::move(faces), std::move(borders))};
   surface.origin_mm = reader.position();
@@ -240,9 +241,8 @@ auto converted(const StepChoice& choice, std::string_view kind, StepResult expec
 std::string identity_of(const StepChoice& choice) {
   std::error_code ignored;
   const auto time = fs::last_write_time(choice.file, ignored).time_since_epoch().count();
-  std::string identity =
-      fmt::format("{}\n{}\n{}\n{}\n{}", fs::absolute(choice.file, ignored).string(), time,
-                  fs::file_size(choice.file, ignored), choice.face, shortest(choice.sew_mm));
+  std::string identity = fmt::format("{}\n{}\n{}\n{}\n{}", fs::absolute(choice.file, ignored).string(), time,
+                                     fs::file_size(choice.file, ignored), choice.face, shortest(choice.sew_mm));
   for (const double angle : choice.rotation_deg) identity += "\n" + shortest(angle);
   if (choice.origin_mm)
     for (const double c : *choice.origin_mm) identity += "\n" + shortest(c);
@@ -276,8 +276,7 @@ class KeptResults {
 
 std::shared_ptr<const StepSurface> read_step_surface(const StepChoice& choice) {
   static KeptResults<StepSurface> kept;
-  return kept.get(choice,
-                  [&] { return converted(choice, kStepSurfaceWord, StepResult::surface, surface_of_result); });
+  return kept.get(choice, [&] { return converted(choice, kStepSurfaceWord, StepResult::surface, surface_of_result); });
 }
 
 std::vector<OutlineLoop> read_step_outline(const StepChoice& choice) {

@@ -19,9 +19,8 @@ inline constexpr schema::Row kStepFaceRow = {
     "Face of the STEP file: its name, its colour (`\"#rrggbb\"`), its number in the order of the file (`\"1\"` is the "
     "first), `\"largest\"`, or `\"towards +z\"` for all faces whose normals point upwards. All faces with the name or "
     "colour are used. Faces of solids that face downwards are not candidates for `\"largest\"`."};
-inline constexpr schema::Row kStepSewRow = {
-    "sew_mm", schema::Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.01,
-    "Maximum width of gaps between faces that are joined."};
+inline constexpr schema::Row kStepSewRow = {"sew_mm", schema::Number{{.low = 0.0, .low_included = false, .high = 1.0}},
+                                            0.01, "Maximum width of gaps between faces that are joined."};
 inline constexpr schema::Row kStepOriginRow = {
     "origin_mm", schema::Numbers{3, kStepCoordinateMm, "coordinates, x, y and z"},
     schema::Computed{"the point of the surface at the centre of its bounding box in plan"},

@@ -41,8 +41,8 @@ Value get_kind(const Substrate& substrate) {
   return static_cast<double>(substrate.shape.index());
 }
 void set_kind(Substrate& substrate, const Value& value) {
-  const std::array<SubstrateShape, 6> shapes = {PlaneSubstrate(), CylinderSubstrate(), SphereSubstrate(),
-                                                FormulaSubstrate(), OffsetSubstrate(), StepFace()};
+  const std::array<SubstrateShape, 6> shapes = {PlaneSubstrate(),   CylinderSubstrate(), SphereSubstrate(),
+                                                FormulaSubstrate(), OffsetSubstrate(),   StepFace()};
   substrate.shape = shapes[static_cast<std::size_t>(std::get<double>(value))];
   if (std::holds_alternative<OffsetSubstrate>(substrate.shape)) substrate.element_axes = ElementAxes::parallel;
 }
@@ -126,11 +126,11 @@ constexpr Row kRows[] = {
 /// Index of the row of `element_axes` for elements other than pins. In designs, this row has the condition
 /// kOfNoPinsOnSurface.
 constexpr std::size_t kAxesRow = std::size(kRows) - 2;
-constexpr Row kKindRowOfDesign = {
-    "kind", Word{kKindsOfDesign}, kRequired,
-    "Shape of the substrate. `\"offset\"`: below the entrance surface, which must have a `kind`. `\"step\"`: a face of a "
-    "STEP file.",
-    access_by<get_kind, set_kind>};
+constexpr Row kKindRowOfDesign = {"kind", Word{kKindsOfDesign}, kRequired,
+                                  "Shape of the substrate. `\"offset\"`: below the entrance surface, which must have a "
+                                  "`kind`. `\"step\"`: a face of a "
+                                  "STEP file.",
+                                  access_by<get_kind, set_kind>};
 constexpr Row kWallRow = {
     "wall_mm",
     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
@@ -169,12 +169,12 @@ std::span<const Row> substrate_rows() {
 }
 
 std::string_view substrate_shape_key(const Substrate& substrate) {
-  return std::visit(Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
-                               [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
-                               [](const OffsetSubstrate&) { return "substrate.wall_mm"; },
-                               [](const StepFace&) { return "substrate.file"; },
-                               [](const auto&) { return "substrate.radius_mm"; }},
-                    substrate.shape);
+  return std::visit(
+      Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
+                 [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
+                 [](const OffsetSubstrate&) { return "substrate.wall_mm"; },
+                 [](const StepFace&) { return "substrate.file"; }, [](const auto&) { return "substrate.radius_mm"; }},
+      substrate.shape);
 }
 
 }  // namespace retrace::geometry

@@ -64,10 +64,9 @@ PatchSurface::PatchSurface(std::vector<PatchTree> faces, std::vector<FaceBorder>
 }
 
 PatchSurface::TangentBeyond PatchSurface::tangent_beyond(const Vec2& point_mm) const {
-  const auto nearest =
-      std::min_element(coarse_border_.begin(), coarse_border_.end(), [&](const Vec2& a, const Vec2& b) {
-        return (a - point_mm).squaredNorm() < (b - point_mm).squaredNorm();
-      });
+  const auto nearest = std::min_element(
+      coarse_border_.begin(), coarse_border_.end(),
+      [&](const Vec2& a, const Vec2& b) { return (a - point_mm).squaredNorm() < (b - point_mm).squaredNorm(); });
   const double none = std::numeric_limits<double>::quiet_NaN();
   if (nearest == coarse_border_.end()) return {point_mm, none, Vec2::Constant(none)};
   const HeightPatch* const patch = faces_[face_at(*nearest)].patch_at(*nearest);

@@ -67,7 +67,7 @@ struct Sag {
   std::optional<Biconic> biconic;
   std::optional<Formula> formula;
   std::shared_ptr<const PatchSurface> patches;  ///< null if there are none
-  std::array<double, 2> position_mm{};  ///< position of a lenslet: cx and cy of the formula
+  std::array<double, 2> position_mm{};          ///< position of a lenslet: cx and cy of the formula
 
   /// Returns z at (x, y) with all derivatives of the type T. The result is NaN where the sag is undefined.
   template <class T>

@@ -16,7 +16,8 @@ struct StepSurface;
 /// Selection and placement of faces in a STEP file.
 struct StepChoice {
   std::filesystem::path file;  ///< relative to the working directory
-  /// Name, colour (#rrggbb) or number of the face, "largest", or "towards +z" for all faces whose normals point upwards.
+  /// Name, colour (#rrggbb) or number of the face, "largest", or "towards +z" for all faces whose normals point
+  /// upwards.
   std::string face = "largest";
   double sew_mm = 0.01;  ///< maximum width of gaps between faces that are joined
   /// Point of the file that becomes the origin of the surface. If empty, the origin is the point of the surface at the

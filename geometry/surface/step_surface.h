@@ -13,7 +13,7 @@ namespace retrace::geometry {
 
 /// Edge at which the normals of two faces differ.
 struct TangentBreak {
-  double angle_deg = 0.0;          ///< maximum angle between the normals along the edge
+  double angle_deg = 0.0;     ///< maximum angle between the normals along the edge
   Vec3 at_mm = Vec3::Zero();  ///< position of this maximum in the frame of the file
 };
 

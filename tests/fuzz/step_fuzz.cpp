@@ -18,8 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace retrace;
   static const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("fuzz" + std::to_string(::getpid()) + ".step");
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     geometry::read_step_surface({.file = file});
   } catch (const InputError& error) {

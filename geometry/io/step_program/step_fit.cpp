@@ -1,6 +1,5 @@
 #include "geometry/io/step_program/step_fit.h"
 
-
 #include <BRepTools.hxx>
 #include <BRepTopAdaptor_FClass2d.hxx>
 #include <BRep_Tool.hxx>
@@ -43,7 +42,7 @@ std::string place_of(const Vec2& p) {
 
 [[noreturn]] void refuse_fold(const Vec2& p) {
   refuse_step("must have a face with one height above each point, but it folds or is vertical near " + place_of(p) +
-         " of the rotated file: choose another face, or set rotation_deg so that +z points to the light");
+              " of the rotated file: choose another face, or set rotation_deg so that +z points to the light");
 }
 
 /// Height of a face and its slope.
@@ -57,7 +56,7 @@ struct FacePoint {
   double u = 0.0;
   double v = 0.0;
   Vec3 position = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();  ///< unit normal that points upwards
+  Vec3 normal = Vec3::UnitZ();   ///< unit normal that points upwards
   bool is_along_surface = true;  ///< true if the normal is that of the surface, false if it is the opposite
 };
 
@@ -75,7 +74,8 @@ class FaceHeights {
         border_(face, Precision::PConfusion()),
         border_in_plan_({PatchTree{}}, {border}) {
     BRepTools::UVBounds(face, low_.x(), high_.x(), low_.y(), high_.y());
-    if (!low_.allFinite() || !high_.allFinite() || low_.cwiseAbs().maxCoeff() > 1e9 || high_.cwiseAbs().maxCoeff() > 1e9)
+    if (!low_.allFinite() || !high_.allFinite() || low_.cwiseAbs().maxCoeff() > 1e9 ||
+        high_.cwiseAbs().maxCoeff() > 1e9)
       refuse_step("must have faces of finite size");
     surface_->Bounds(natural_low_.x(), natural_high_.x(), natural_low_.y(), natural_high_.y());
     find_range();
@@ -129,8 +129,9 @@ class FaceHeights {
     return FacePoint{u, v, vector_of(p.XYZ()), n.z() < 0.0 ? Vec3(-n) : n, n.z() >= 0.0};
   }
 
-  /// Finds out whether the border of the face encloses it in the plane of the parameters. A border around a pole, such as
-  /// the vertex of a surface of revolution, may not do so. The whole surface is then searched for points of the face.
+  /// Finds out whether the border of the face encloses it in the plane of the parameters. A border around a pole, such
+  /// as the vertex of a surface of revolution, may not do so. The whole surface is then searched for points of the
+  /// face.
   void find_range() {
     constexpr int kSteps = 16;
     constexpr double kMaxOutside = 0.02;
@@ -145,7 +146,8 @@ class FaceHeights {
         if (!border_in_plan_.covers(point->position.head<2>(), tolerance_mm)) ++outside_in_plan;
       }
     constexpr double kInfinite = 1e50;
-    const bool is_finite = natural_low_.cwiseAbs().maxCoeff() < kInfinite && natural_high_.cwiseAbs().maxCoeff() < kInfinite;
+    const bool is_finite =
+        natural_low_.cwiseAbs().maxCoeff() < kInfinite && natural_high_.cwiseAbs().maxCoeff() < kInfinite;
     has_range_ = !is_finite || (inside > 0 && outside_in_plan <= kMaxOutside * inside);
     if (has_range_) return;
     low_ = natural_low_;
@@ -217,9 +219,7 @@ class FaceHeights {
     return *nearest;
   }
 
-  static FaceHeight height_with(double z_mm, const Vec3& normal) {
-    return {z_mm, -normal.head<2>() / normal.z()};
-  }
+  static FaceHeight height_with(double z_mm, const Vec3& normal) { return {z_mm, -normal.head<2>() / normal.z()}; }
 
   std::optional<FaceHeight> at_plane(const Vec2& point) const {
     const gp_Ax3 frame = adaptor_.Plane().Position();
@@ -272,8 +272,8 @@ class FaceHeights {
 
   std::optional<FaceHeight> search(const Vec2& point) const {
     constexpr int kMaxSteps = 50;
-    constexpr double kMaxStep = 0.2;   // fraction of the range of parameters
-    constexpr double kBeyond = 0.1;    // continuation of the surface, as a fraction of its range of parameters
+    constexpr double kMaxStep = 0.2;  // fraction of the range of parameters
+    constexpr double kBeyond = 0.1;   // continuation of the surface, as a fraction of its range of parameters
     const double accuracy = 4e-15 * (point.norm() + (grid_high_ - grid_low_).norm());
     const FacePoint& start = nearest_sample(point);
     Vec2 uv(start.u, start.v);
@@ -319,7 +319,7 @@ class FaceHeights {
   GeomAdaptor_Surface adaptor_;
   BRepTopAdaptor_FClass2d border_;
   PatchSurface border_in_plan_;
-  bool has_range_ = true;  ///< true if the border encloses the face in the plane of the parameters
+  bool has_range_ = true;    ///< true if the border encloses the face in the plane of the parameters
   Vec2 low_ = Vec2::Zero();  ///< range of parameters of the face
   Vec2 high_ = Vec2::Zero();
   Vec2 natural_low_ = Vec2::Zero();  ///< range of parameters of the surface
@@ -352,8 +352,7 @@ constexpr Allowed kOfSmallPatch = {2e-7, 1e-7};
 class TreeMaker {
  public:
   /// \param margin_mm distance by which the patches continue beyond the border
-  TreeMaker(const FaceHeights& face, const FaceBorder& border, const Vec3& origin_mm, double margin_mm,
-            double size_mm)
+  TreeMaker(const FaceHeights& face, const FaceBorder& border, const Vec3& origin_mm, double margin_mm, double size_mm)
       : face_(face), border_(border), origin_(origin_mm), margin_mm_(margin_mm), size_mm_(size_mm) {
     // Rows are the powers of the nodes.
     Eigen::Matrix<double, kNodes, kNodes> powers;
@@ -408,8 +407,7 @@ class TreeMaker {
     for (const Side& side : sides) {
       const Vec2 along = side.to - side.from;
       const double length2 = along.squaredNorm();
-      const double fraction =
-          length2 > 0.0 ? std::clamp(along.dot(cell.centre - side.from) / length2, 0.0, 1.0) : 0.0;
+      const double fraction = length2 > 0.0 ? std::clamp(along.dot(cell.centre - side.from) / length2, 0.0, 1.0) : 0.0;
       if ((side.from + fraction * along - cell.centre).norm() <= reach) near.push_back(side);
     }
     return near;
@@ -426,7 +424,7 @@ class TreeMaker {
       tree_.nodes[node].first = static_cast<std::uint32_t>(tree_.patches.size() - 1);
       if (others_ + tree_.patches.size() > kMaxPatches)
         refuse_step("must have smoother faces: more than " + std::to_string(kMaxPatches) +
-               " polynomials are needed to approximate them within 1 nm and 0.1 arcsec");
+                    " polynomials are needed to approximate them within 1 nm and 0.1 arcsec");
       return;
     }
     if (cell.half.maxCoeff() < kMinSizeBeyond * size_mm_ && !is_within) return;
@@ -434,7 +432,7 @@ class TreeMaker {
       const std::optional<FaceHeight> height = face_.at(cell.centre);
       if (!height) refuse_fold(cell.centre);
       refuse_step("must have smooth faces, but no polynomial approximates the face within 1 nm and 0.1 arcsec near " +
-             place_of(cell.centre) + " of the rotated file");
+                  place_of(cell.centre) + " of the rotated file");
     }
     const auto first = static_cast<std::uint32_t>(tree_.nodes.size());
     tree_.nodes.resize(tree_.nodes.size() + 2);
@@ -526,8 +524,7 @@ void measure(FaceHeights& face, const PatchTree& tree, std::size_t faces, Fitted
     if (!(difference_mm < kOtherSheetMm)) refuse_fold(exact->position.head<2>());
     const Vec3 normal = Vec3(-z.x, -z.y, 1.0).normalized();
     fitted.deviation_mm = std::max(fitted.deviation_mm, difference_mm);
-    fitted.deviation_arcsec =
-        std::max(fitted.deviation_arcsec, kArcsecPerRad * normal.cross(exact->normal).norm());
+    fitted.deviation_arcsec = std::max(fitted.deviation_arcsec, kArcsecPerRad * normal.cross(exact->normal).norm());
   }
 }
 
@@ -578,15 +575,14 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
   FittedFaces fitted;
   fitted.patches.borders = borders_of(chosen, border_mm);
   std::deque<FaceHeights> faces;
-  for (std::size_t k = 0; k < chosen.faces.size(); ++k)
-    faces.emplace_back(chosen.faces[k], fitted.patches.borders[k]);
+  for (std::size_t k = 0; k < chosen.faces.size(); ++k) faces.emplace_back(chosen.faces[k], fitted.patches.borders[k]);
   const PlanBox box = box_of(loops_around(chosen, choice.sew_mm));
   fitted.size_mm = box.high - box.low;
   const double size_mm = fitted.size_mm.maxCoeff();
   if (!(size_mm >= kMinSizeMm && size_mm <= kMaxSizeMm)) {
     std::ostringstream text;
-    text << "must have faces of 0.001 mm to 100000 mm, but they are " << size_mm << " mm large: check its unit, which is "
-         << chosen.unit;
+    text << "must have faces of 0.001 mm to 100000 mm, but they are " << size_mm
+         << " mm large: check its unit, which is " << chosen.unit;
     refuse_step(text.str());
   }
   if (choice.origin_mm) {

@@ -11,7 +11,7 @@ namespace retrace::geometry {
 
 /// Patches of the chosen faces, with the measured deviation.
 struct FittedFaces {
-  StepPatches patches;  ///< relative to `origin_mm`
+  StepPatches patches;            ///< relative to `origin_mm`
   Vec3 origin_mm = Vec3::Zero();  ///< in the rotated frame of the file
   Vec2 size_mm = Vec2::Zero();
   double deviation_mm = 0.0;

@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/io/step_program/step_fit.h"
 #include "geometry/io/step_message.h"
-#include "geometry/io/step_reader.h"
+#include "geometry/io/step_program/step_fit.h"
 #include "geometry/io/step_program/step_shapes.h"
+#include "geometry/io/step_reader.h"
 
 namespace retrace::geometry {
 namespace {
@@ -86,9 +86,8 @@ void put_surface(StepMessageWriter& writer, const StepChoice& choice) {
   writer.put(static_cast<double>(StepResult::surface));
   writer.put_list(fitted.patches.faces, [&](const PatchTree& tree) { put_tree(writer, tree); });
   writer.put_list(fitted.patches.borders, [&](const FaceBorder& border) {
-    writer.put_list(border, [&](const std::vector<Vec2>& loop) {
-      writer.put_list(loop, [&](const Vec2& p) { writer.put(p); });
-    });
+    writer.put_list(
+        border, [&](const std::vector<Vec2>& loop) { writer.put_list(loop, [&](const Vec2& p) { writer.put(p); }); });
   });
   writer.put(Vec3(rotation_of(choice).transpose() * fitted.origin_mm));
   writer.put(fitted.size_mm);

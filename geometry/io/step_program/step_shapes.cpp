@@ -273,7 +273,8 @@ std::vector<TopoDS_Face> largest_of(const std::vector<Candidate>& candidates) {
     area = own;
     largest = &candidate;
   }
-  if (largest == nullptr) refuse_step("must have a face that is larger than 0 and faces +z after the rotation, but has none");
+  if (largest == nullptr)
+    refuse_step("must have a face that is larger than 0 and faces +z after the rotation, but has none");
   return {largest->face};
 }
 
@@ -299,7 +300,7 @@ std::vector<TopoDS_Face> selected(std::vector<Candidate> candidates, const std::
     choose([&](const Candidate& candidate) { return candidate.colour == lower_case(word); });
   if (!faces.empty()) return faces;
   refuse_step("has no face \"" + word + "\" among its " + std::to_string(candidates.size()) +
-         " faces: give a name, a colour such as \"#ff0000\", a number from 1 on, \"largest\" or \"towards +z\"");
+              " faces: give a name, a colour such as \"#ff0000\", a number from 1 on, \"largest\" or \"towards +z\"");
 }
 
 /// Divides a face at lines where its curvature or slope changes abruptly. Polynomials do not converge at such lines.
@@ -309,8 +310,7 @@ void add_smooth_parts(const TopoDS_Face& face, std::vector<TopoDS_Face>& parts) 
   division.SetBoundaryCriterion(GeomAbs_C0);
   division.SetPCurveCriterion(GeomAbs_C0);
   const TopoDS_Shape all = division.Perform() ? division.Result() : TopoDS_Shape(face);
-  for (TopExp_Explorer part(all, TopAbs_FACE); part.More(); part.Next())
-    parts.push_back(TopoDS::Face(part.Current()));
+  for (TopExp_Explorer part(all, TopAbs_FACE); part.More(); part.Next()) parts.push_back(TopoDS::Face(part.Current()));
 }
 
 /// Returns the faces after sewing them together.
@@ -350,9 +350,10 @@ void check_connected(const ChosenFaces& chosen, double sew_mm) {
   int pieces = 0;
   for (int k = 1; k <= numbers.Extent(); ++k) pieces += root(k) == k ? 1 : 0;
   if (pieces > 1)
-    refuse_step("must be one connected surface, but the " + std::to_string(chosen.faces.size()) + " chosen faces form " +
-           std::to_string(pieces) + " separate pieces: choose other faces, or increase sew_mm (" + text_of(sew_mm) +
-           ") if there are gaps between them");
+    refuse_step("must be one connected surface, but the " + std::to_string(chosen.faces.size()) +
+                " chosen faces form " + std::to_string(pieces) +
+                " separate pieces: choose other faces, or increase sew_mm (" + text_of(sew_mm) +
+                ") if there are gaps between them");
 }
 
 /// Curve of an edge.
@@ -363,7 +364,8 @@ struct EdgeCurve {
   gp_Pnt start;
   gp_Pnt end;
 
-  explicit EdgeCurve(const TopoDS_Edge& edge) : curve(edge), first(curve.FirstParameter()), last(curve.LastParameter()) {
+  explicit EdgeCurve(const TopoDS_Edge& edge)
+      : curve(edge), first(curve.FirstParameter()), last(curve.LastParameter()) {
     if (!std::isfinite(first) || !std::isfinite(last) || std::abs(first) > 1e9 || std::abs(last) > 1e9)
       refuse_step("must have edges of finite length");
     // Neighbouring edges share vertices. Their curves may end a small distance from them.
@@ -481,7 +483,8 @@ OutlineLoop sides_of(const TopoDS_Edge& edge) {
   if (is_arc) {
     // Both halves are exact arcs.
     for (const auto& [from, to] : {std::pair(curve.first, middle), std::pair(middle, curve.last)})
-      sides.push_back({curve.at(from), curve.at(to), bulge_through(curve.at(from), curve.at(0.5 * (from + to)), curve.at(to))});
+      sides.push_back(
+          {curve.at(from), curve.at(to), bulge_through(curve.at(from), curve.at(0.5 * (from + to)), curve.at(to))});
     return sides;
   }
   add_sides(curve, curve.first, curve.last, 0, sides);
@@ -557,15 +560,13 @@ std::vector<OutlineLoop> loops_around(const ChosenFaces& chosen, double sew_mm) 
       const auto distance = [&](const OutlineLoop& piece) {
         return std::min((piece.front().from_mm - end).norm(), (piece.back().to_mm - end).norm());
       };
-      const auto next = std::min_element(pieces.begin(), pieces.end(), [&](const auto& a, const auto& b) {
-        return distance(a) < distance(b);
-      });
+      const auto next = std::min_element(pieces.begin(), pieces.end(),
+                                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
       if (next == pieces.end() || distance(*next) > tolerance_mm)
         refuse_step("must have faces with a closed border, but the border has a gap at x = " + text_of(end.x()) +
-               ", y = " + text_of(end.y()) + " mm");
-      OutlineLoop piece = (next->front().from_mm - end).norm() <= (next->back().to_mm - end).norm()
-                              ? *next
-                              : reversed_sides(*next);
+                    ", y = " + text_of(end.y()) + " mm");
+      OutlineLoop piece =
+          (next->front().from_mm - end).norm() <= (next->back().to_mm - end).norm() ? *next : reversed_sides(*next);
       pieces.erase(next);
       piece.front().from_mm = end;
       loop.insert(loop.end(), piece.begin(), piece.end());
@@ -635,7 +636,8 @@ std::vector<TangentBreak> tangent_breaks(const ChosenFaces& chosen, const StepCh
         // The material is below all faces, whatever their orientation in the file.
         if (normals[side].z() < 0.0) normals[side] = -normals[side];
       }
-      const double angle_deg = std::atan2(normals[0].cross(normals[1]).norm(), normals[0].dot(normals[1])) / kRadPerDegree;
+      const double angle_deg =
+          std::atan2(normals[0].cross(normals[1]).norm(), normals[0].dot(normals[1])) / kRadPerDegree;
       if (!(angle_deg > largest.angle_deg)) continue;
       const gp_Pnt2d uv = curves[0]->Value(t);
       const gp_Pnt p = surfaces[0]->Value(uv.X(), uv.Y());

@@ -39,8 +39,8 @@ std::vector<OutlineLoop> loops_around(const ChosenFaces& chosen, double sew_mm);
 /// \param tolerance_mm maximum distance between a curve and the polygon
 std::vector<FaceBorder> borders_of(const ChosenFaces& chosen, double tolerance_mm);
 
-/// Returns the edges between faces whose normals differ by more than 0.01 degrees, sorted by descending angle. Positions
-/// are in the frame of the file.
+/// Returns the edges between faces whose normals differ by more than 0.01 degrees, sorted by descending angle.
+/// Positions are in the frame of the file.
 std::vector<TangentBreak> tangent_breaks(const ChosenFaces& chosen, const StepChoice& choice);
 
 /// Returns the rotation from the frame of the file to the rotated frame.

@@ -27,10 +27,10 @@ const geometry::StepFace* substrate_of_step(const design::Design& design) {
 std::string face_text(std::string_view label, const geometry::StepFace& face) {
   const geometry::StepSurface& surface = *face.surface;
   const std::size_t count = surface.patches.face_count();
-  std::string text = fmt::format("  {:<20}{}, {} face{}, {}; within {} nm and {} arcsec of the file\n", label,
-                                 printable(face.name), count, count == 1 ? "" : "s", printable(surface.unit),
-                                 fixed_visible(kNmPerMm * surface.deviation_mm, 4),
-                                 fixed_visible(surface.deviation_arcsec, 4));
+  std::string text =
+      fmt::format("  {:<20}{}, {} face{}, {}; within {} nm and {} arcsec of the file\n", label, printable(face.name),
+                  count, count == 1 ? "" : "s", printable(surface.unit),
+                  fixed_visible(kNmPerMm * surface.deviation_mm, 4), fixed_visible(surface.deviation_arcsec, 4));
   if (surface.gap_mm > 0.0)
     text += fmt::format("  {:<20}gaps of up to {} mm between faces were closed\n", "", fixed(surface.gap_mm, 6));
   constexpr std::size_t kMaxLines = 10;

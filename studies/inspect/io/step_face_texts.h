@@ -13,7 +13,8 @@ namespace retrace::studies {
 /// measured deviation, closed gaps and tangent breaks. Returns an empty text if the design has no such faces.
 std::string step_faces_text(const design::Design& design);
 
-/// Adds the member `step` to the objects `entrance_surface` and `substrate` of a report if they are faces of STEP files.
+/// Adds the member `step` to the objects `entrance_surface` and `substrate` of a report if they are faces of STEP
+/// files.
 void add_step_faces(const design::Design& design, nlohmann::ordered_json& json);
 
 }  // namespace retrace::studies

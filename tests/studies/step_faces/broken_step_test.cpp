@@ -67,7 +67,8 @@ broken = {
     'equal_points': re.sub(r"CARTESIAN_POINT\('',\([^)]*\)", "CARTESIAN_POINT('',(1.0,1.0,1.0)", spline),
     'noise': spline[:3000] + '\x00\xff\x13;;((\'' * 50 + spline[3200:],
     'equal_numbers': spline.replace('#20=', '#21=', 1),
-    'apart': text(apart)}
+    'apart': text(apart)
+}
 for name, content in broken.items():
     open(name + '.step', 'w', encoding='latin1').write(content)
 open('names', 'w').write('\n'.join(broken))
@@ -75,10 +76,10 @@ open('spline.step', 'w').write(spline)
 )";
 
 rusage usage_of_children() {
-  rusage usage{};
-  ::getrusage(RUSAGE_CHILDREN, &usage);
-  return usage;
-}
+    rusage usage{};
+    ::getrusage(RUSAGE_CHILDREN, &usage);
+    return usage;
+  }
 
 /// Returns the processor time of all children that have ended.
 double seconds_of_children() {
@@ -142,8 +143,10 @@ TEST_F(BrokenStep, RandomChangesAreReadOrRefused) {
     folder_.write(name + ".step", text);
     const std::string place =
         unrecorded_refusal_of([&] { geometry::read_step_surface({.file = file(name)}); }, "taken");
-    if (place == "taken") ++taken;
-    else EXPECT_EQ(place, "TMP/" + name + ".step");
+    if (place == "taken")
+      ++taken;
+    else
+      EXPECT_EQ(place, "TMP/" + name + ".step");
   }
   EXPECT_GT(taken, 0);
   EXPECT_LT(taken, kChanges);

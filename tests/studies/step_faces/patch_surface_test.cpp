@@ -75,8 +75,8 @@ TEST(PatchSurface, ContinuesAlongItsTangent) {
 TEST(PatchSurface, BorderChoosesTheFace) {
   const std::vector<Vec2> left = {{-2, -2}, {-0.5, -2}, {0.5, 2}, {-2, 2}};
   const std::vector<Vec2> right = {{-0.5, -2}, {2, -2}, {2, 2}, {0.5, 2}};
-  const PatchSurface surface({single(patch_of({0, 0}, {2, 2}, 1, 0, 0, 0)), single(patch_of({0, 0}, {2, 2}, 2, 0, 0, 0))},
-                             {{left}, {right}});
+  const PatchSurface surface(
+      {single(patch_of({0, 0}, {2, 2}, 1, 0, 0, 0)), single(patch_of({0, 0}, {2, 2}, 2, 0, 0, 0))}, {{left}, {right}});
   for (const double y : {-1.9, -1.0, 0.0, 0.3, 1.9}) {
     EXPECT_EQ(surface.evaluate(y / 4 - 1e-9, y), 1.0);
     EXPECT_EQ(surface.evaluate(y / 4 + 1e-9, y), 2.0);
@@ -87,8 +87,9 @@ TEST(PatchSurface, BorderChoosesTheFace) {
 }
 
 TEST(PatchSurface, GapBelongsToTheNearerFace) {
-  const PatchSurface surface({single(patch_of({0, 0}, {2, 2}, 1, 0, 0, 0)), single(patch_of({0, 0}, {2, 2}, 2, 0, 0, 0))},
-                             {{rectangle(-2, -2, -0.1, 2)}, {rectangle(0.1, -2, 2, 2)}});
+  const PatchSurface surface(
+      {single(patch_of({0, 0}, {2, 2}, 1, 0, 0, 0)), single(patch_of({0, 0}, {2, 2}, 2, 0, 0, 0))},
+      {{rectangle(-2, -2, -0.1, 2)}, {rectangle(0.1, -2, 2, 2)}});
   EXPECT_EQ(surface.evaluate(-0.01, 0.5), 1.0);
   EXPECT_EQ(surface.evaluate(0.01, 0.5), 2.0);
 }

@@ -70,7 +70,8 @@ class StepFaces : public ::testing::Test {
 raytrace::ConeResult traced(const design::OpticalModel& model, double incidence_deg) {
   const raytrace::MonteCarlo tracer(model.part, raytrace::MonteCarlo::Engine::embree, &*model.entrance);
   return tracer
-      .trace(model.optics, {Angle::from_deg(incidence_deg), Angle::from_deg(20.0), raytrace::kUnpolarised}, {0.5}, rays(8192), {})
+      .trace(model.optics, {Angle::from_deg(incidence_deg), Angle::from_deg(20.0), raytrace::kUnpolarised}, {0.5},
+             rays(8192), {})
       .cones[0];
 }
 
@@ -176,7 +177,8 @@ TEST_F(StepFaces, RotationsAndOriginPlaceTheFile) {
   EXPECT_NEAR(moved.patches.evaluate(3.0, 11.0), height(8.0) + 2.0, 1e-9);
   EXPECT_EQ(refusal_of([&] { surface_of({.rotation_deg = {90, 0, 0}}); }), "TMP/lens.step");
   const double tilt = 0.3;
-  const geometry::StepSurface tilted = surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}, .rotation_deg = {0, tilt, 0}});
+  const geometry::StepSurface tilted =
+      surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}, .rotation_deg = {0, tilt, 0}});
   // A point (x, z) of the circle has the rotated position (x cos + z sin, -x sin + z cos).
   const double angle = tilt * std::numbers::pi / 180.0;
   const double x = 6.0;
@@ -257,7 +259,8 @@ TEST_F(StepFaces, ElementsFollowTheFaceAtAWall) {
   write_step(folder_, "lens.step", "w.sphere(s)");
   const std::string below = "[substrate]\nkind = \"offset\"\nwall_mm = 2\n[body]\nrefractive_index = 1.49\n";
   const geometry::Part of_file = model_of(kCubes + "[entrance_surface]\n" + step_keys() + below).part;
-  const geometry::Part of_keys = model_of(kCubes + "[entrance_surface]\nkind = \"sphere\"\nradius_mm = 150\n" + below).part;
+  const geometry::Part of_keys =
+      model_of(kCubes + "[entrance_surface]\nkind = \"sphere\"\nradius_mm = 150\n" + below).part;
   ASSERT_EQ(of_file.placements.size(), of_keys.placements.size());
   EXPECT_NEAR(of_file.thickness_mm, of_keys.thickness_mm, 1e-9);
   for (std::size_t k = 0; k < of_file.placements.size(); ++k)
@@ -276,9 +279,10 @@ TEST_F(StepFaces, PartMustBeCovered) {
 
 TEST_F(StepFaces, DocumentsAreReadAgain) {
   write_step(folder_, "lens.step", "w.sphere(s)");
-  const std::string text = kCubes + "[entrance_surface]\n" +
-                           step_keys("face = \"front\"\nsew_mm = 0.02\norigin_mm = [1, 2, 3]\nrotation_deg = [0, 0, 90]\n") +
-                           "[substrate]\n" + step_keys("rotation_deg = [0, 0, 180]\n") + kBody;
+  const std::string text =
+      kCubes + "[entrance_surface]\n" +
+      step_keys("face = \"front\"\nsew_mm = 0.02\norigin_mm = [1, 2, 3]\nrotation_deg = [0, 0, 90]\n") +
+      "[substrate]\n" + step_keys("rotation_deg = [0, 0, 180]\n") + kBody;
   const std::string written = design::design_text(read(text));
   EXPECT_EQ(design::design_text(read(written)), written);
   for (const std::string part : {"sew_mm = 0.02", "origin_mm = [1", "[0", "90", "180", "face = \"front\""})
