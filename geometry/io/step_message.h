@@ -61,7 +61,7 @@ class StepMessageWriter {
 /// Reads a result. All functions throw std::runtime_error if the result is damaged.
 class StepMessageReader {
  public:
-  explicit StepMessageReader(std::string_view text) : rest_(text) {}
+  explicit StepMessageReader(std::string_view text) : remainder_(text) {}
 
   double number() {
     double value = 0.0;
@@ -79,7 +79,7 @@ class StepMessageReader {
   /// Reads the length of a list whose items have at least one byte.
   std::size_t count() {
     const double value = number();
-    if (!(value >= 0.0 && value <= static_cast<double>(rest_.size()))) fail();
+    if (!(value >= 0.0 && value <= static_cast<double>(remainder_.size()))) fail();
     return static_cast<std::size_t>(value);
   }
   std::string text() { return std::string(take(count())); }
@@ -95,18 +95,18 @@ class StepMessageReader {
     if (!(value >= 0.0 && value < static_cast<double>(end))) fail();
     return static_cast<std::uint32_t>(value);
   }
-  bool is_at_end() const { return rest_.empty(); }
+  bool is_at_end() const { return remainder_.empty(); }
   [[noreturn]] static void fail() { throw std::runtime_error("the result is damaged"); }
 
  private:
   std::string_view take(std::size_t bytes) {
-    if (bytes > rest_.size()) fail();
-    const std::string_view taken = rest_.substr(0, bytes);
-    rest_.remove_prefix(bytes);
+    if (bytes > remainder_.size()) fail();
+    const std::string_view taken = remainder_.substr(0, bytes);
+    remainder_.remove_prefix(bytes);
     return taken;
   }
 
-  std::string_view rest_;
+  std::string_view remainder_;
 };
 
 }  // namespace retrace::geometry
