@@ -98,6 +98,7 @@ std::string_view shape_key_of(const EntranceForm& form) {
   return std::visit(Overloaded{[](const geometry::PlaneEntrance&) { return "entrance_surface.kind"; },
                                [](const geometry::BiconicEntrance&) { return "entrance_surface.radii_mm"; },
                                [](const geometry::FormulaEntrance&) { return "entrance_surface.formula"; },
+                               [](const geometry::StepFace&) { return "entrance_surface.file"; },
                                [](const auto&) { return "entrance_surface.radius_mm"; }},
                     form.shape);
 }
@@ -105,10 +106,10 @@ std::string_view shape_key_of(const EntranceForm& form) {
 }  // namespace
 
 OutlineKeys with_absolute_path(OutlineKeys outline) {
-  if (outline.dxf.empty()) return outline;
-  outline.dxf = fs::absolute(outline.dxf).lexically_normal();
+  if (outline.file.empty()) return outline;
+  outline.file = fs::absolute(outline.file).lexically_normal();
   for (auto& [key, value] : outline.values)
-    if (key == "dxf") value = outline.dxf.string();
+    if (key == "dxf" || key == "file") value = outline.file.string();
   return outline;
 }
 

@@ -143,11 +143,11 @@ struct OutlineKeys {
   /// Keys that are set in the table, and their values, in the order of the file format. The margin and the tolerance
   /// are not included, because geometry::PlanRegion stores them.
   std::vector<std::pair<std::string, schema::Value>> values;
-  /// Path of the DXF file, relative to the working directory; empty if the outline is not in a file.
-  std::filesystem::path dxf;
+  /// Path of the DXF or STEP file, relative to the working directory; empty if the outline is not in a file.
+  std::filesystem::path file;
 };
 
-/// Returns the keys after making the path of the DXF file absolute. A design that is written to another folder needs an
+/// Returns the keys after making the path of the file absolute. A design that is written to another folder needs an
 /// absolute path.
 OutlineKeys with_absolute_path(OutlineKeys outline);
 

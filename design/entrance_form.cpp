@@ -1,5 +1,6 @@
 #include "design/entrance_form.h"
 
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -7,17 +8,31 @@
 #include "geometry/direction.h"
 #include "geometry/elements/substrate_checks.h"
 #include "geometry/io/substrate_rows.h"
+#include "geometry/surface/step_surface.h"
 
 namespace retrace::design {
 
 using geometry::Vec2, geometry::Vec3;
+
+namespace {
+
+/// Returns the size of the smallest features of a shape, or infinity if it is unknown. At an edge between two faces,
+/// the curvature is infinite, and a search for the size would not end.
+double finest_mm(const geometry::EntranceShape& shape) {
+  constexpr double kFeaturesAcross = 16.0;
+  const auto* const face = std::get_if<geometry::StepFace>(&shape);
+  if (face == nullptr || face->surface->patches.face_count() == 1) return std::numeric_limits<double>::infinity();
+  return face->surface->size_mm.maxCoeff() / kFeaturesAcross;
+}
+
+}  // namespace
 
 std::shared_ptr<const geometry::EntranceSurface> surface_of(const EntranceForm& form, const Vec3& origin_mm) {
   const geometry::SurfacePose pose{origin_mm,
                                    geometry::rotation_of(form.inclination) *
                                        geometry::rotation_about(Vec3::UnitZ(), Angle::from_deg(form.rotation_deg))};
   return std::make_shared<const geometry::EntranceSurface>(
-      geometry::FreeformSurface(geometry::height_of(form.shape), std::nullopt, {}, {}), pose);
+      geometry::FreeformSurface(geometry::height_of(form.shape), std::nullopt, {}, {}), pose, finest_mm(form.shape));
 }
 
 void find_offset(Design& design) {

@@ -162,6 +162,14 @@ void set_array(Document& document, const ElementArray& elements) {
   keys.set("mask_threshold", elements.mask->threshold);
 }
 
+void set_step_face(Keys& keys, const geometry::StepFace& face) {
+  keys.set_word("file", face.name);
+  keys.set_word("face", face.choice.face);
+  keys.set("sew_mm", face.choice.sew_mm);
+  if (face.choice.origin_mm) keys.set("origin_mm", list_of(*face.choice.origin_mm));
+  keys.set("rotation_deg", list_of(face.choice.rotation_deg));
+}
+
 void set_substrate(Document& document, const Substrate& substrate) {
   Keys keys(document, "substrate");
   keys.set_choice("kind", substrate.shape.index());
@@ -175,7 +183,8 @@ void set_substrate(Document& document, const Substrate& substrate) {
                         },
                         [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
                         [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); },
-                        [&](const geometry::OffsetSubstrate& offset) { keys.set("wall_mm", offset.wall_mm); }},
+                        [&](const geometry::OffsetSubstrate& offset) { keys.set("wall_mm", offset.wall_mm); },
+                        [&](const geometry::StepFace& face) { set_step_face(keys, face); }},
              substrate.shape);
   if (std::holds_alternative<geometry::OffsetSubstrate>(substrate.shape)) return;
   keys.set_word("element_axes", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
@@ -269,12 +278,13 @@ void set_entrance_form(Keys& keys, const EntranceForm& form) {
                    keys.set("conics", list_of(biconic.conics));
                  },
                  [&](const geometry::FormulaEntrance& formula) { keys.set_word("formula", formula.height_mm->text); },
+                 [&](const geometry::StepFace& face) { set_step_face(keys, face); },
                  [&](const auto& conical) {
                    keys.set("radius_mm", conical.radius_mm);
                    keys.set("conic", conical.conic);
                  }},
       form.shape);
-  keys.set("rotation_deg", form.rotation_deg);
+  if (!std::holds_alternative<geometry::StepFace>(form.shape)) keys.set("rotation_deg", form.rotation_deg);
   keys.set("incidence_deg", form.inclination.incidence_deg);
   keys.set("azimuth_deg", form.inclination.azimuth_deg);
   if (form.has_pin_angle) keys.set("pin_angle_deg", form.inclination.pin_angle_deg);

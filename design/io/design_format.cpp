@@ -77,9 +77,10 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
 constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
-constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};
-constexpr Rule kOutlineRules[] = {OneOf{
-    kOutlineBorders, "must contain exactly one of the keys polygon_mm, circle_mm and dxf, which determine its border"}};
+constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf", "file"};
+constexpr Rule kOutlineRules[] = {
+    OneOf{kOutlineBorders,
+          "must contain exactly one of the keys polygon_mm, circle_mm, dxf and file, which determine its border"}};
 constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
                                                "columns",       "mask",          "rest"};
 constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,

@@ -19,6 +19,7 @@
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"
+#include "design/step_faces.h"
 #include "materials/io/index_record.h"
 
 namespace retrace::design {
@@ -253,7 +254,7 @@ std::vector<OuterShell> read_shells(const Document& document) {
   return shells;
 }
 
-/// Returns the design of a document. Files that are named in the document are not read.
+/// Returns the design of a document. Of the files that are named in the document, only DXF and STEP files are read.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
   schema::check(document, design_format().root, "", &document);
@@ -283,6 +284,7 @@ Design resolved(std::shared_ptr<const Document> given) {
                          document.text("idealisation.entrance") == "lossless"};
   design.document = std::move(given);
   find_pin_angle(design);
+  read_step_faces(design);
   find_offset(design);
   return design;
 }
@@ -312,7 +314,7 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// Keys whose values are names of files. A store of study results lists the files of a design in this order and is
 /// valid only for this list. New keys must therefore be appended at the end.
-constexpr std::array<std::string_view, 10> kFilesOfStores = {"part.mesh",
+constexpr std::array<std::string_view, 13> kFilesOfStores = {"part.mesh",
                                                              "array.mask",
                                                              "surface.height_map",
                                                              "part.facets",
@@ -321,7 +323,10 @@ constexpr std::array<std::string_view, 10> kFilesOfStores = {"part.mesh",
                                                              "entrance_surface.mesh",
                                                              "body.catalogue",
                                                              "form.map",
-                                                             "outline.dxf"};
+                                                             "outline.dxf",
+                                                             "outline.file",
+                                                             "entrance_surface.file",
+                                                             "substrate.file"};
 
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides) {

@@ -315,8 +315,11 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
     document.fail(
         key,
         "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
-  // A substrate below the entrance surface is checked later, by find_offset(), after the surface has been read.
-  if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape)) return;
+  // A substrate below the entrance surface or in a file is checked after the surface or the file has been read, by
+  // find_offset() or read_step_faces().
+  if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape) ||
+      std::holds_alternative<geometry::StepFace>(part.substrate->shape))
+    return;
   try {
     geometry::check_substrate(part);
   } catch (const InputError& error) {
@@ -387,9 +390,9 @@ void check_form(const Document& document) {
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
-constexpr schema::Words kOutlineKeys = {"outline.polygon_mm",      "outline.circle_mm",        "outline.dxf",
-                                        "outline.side_sagitta_mm", "outline.corner_radius_mm", "outline.holes_mm",
-                                        "outline.margin_mm",       "outline.tolerance_mm"};
+constexpr schema::Words kOutlineKeys = {"outline.polygon_mm", "outline.circle_mm",       "outline.dxf",
+                                        "outline.file",       "outline.side_sagitta_mm", "outline.corner_radius_mm",
+                                        "outline.holes_mm",   "outline.margin_mm",       "outline.tolerance_mm"};
 constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
                                                  "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralErrorArcmin, kDihedralErrorArcsec};

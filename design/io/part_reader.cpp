@@ -140,6 +140,9 @@ PartSpec read_part(const Document& document) {
   if (document.has("substrate"))
     schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::design_substrate_rows()}, "substrate",
                  &part.substrate.emplace());
+  if (part.substrate)
+    if (auto* const face = std::get_if<geometry::StepFace>(&part.substrate->shape))
+      face->choice.file = document.file("substrate.file");
   read_angle_errors(document, part);
   read_edges(document, part.edges);
   for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)

@@ -13,10 +13,17 @@ namespace retrace::design {
 /// Keys that check_length_of_round_cube() checks.
 inline constexpr std::string_view kRoundLengthKeys[] = {"element.length_mm", "element.edge_length_mm"};
 /// Keys that check_face_of_round_cube() checks.
-inline constexpr std::string_view kRoundFaceKeys[] = {
-    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
-    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
-    "outline.polygon_mm",     "outline.dxf"};
+inline constexpr std::string_view kRoundFaceKeys[] = {"element.chamfer_mm",
+                                                      "element.recess_mm",
+                                                      "element.mount_diameter_mm",
+                                                      "surface.rim_radius_um",
+                                                      "surface.rim_chamfer_um",
+                                                      "part.facets",
+                                                      "outline.margin_mm",
+                                                      "outline.holes_mm",
+                                                      "outline.polygon_mm",
+                                                      "outline.dxf",
+                                                      "outline.file"};
 /// Keys that check_hollow() checks. The first key marks a hollow cube corner. The next kRefusedKeysOfHollow - 1 keys
 /// are not allowed for hollow cube corners.
 inline constexpr std::string_view kHollowKeys[] = {

@@ -300,6 +300,8 @@ void check_substrate(const design::Design& design, const JobRequest& request) {
         "must be \"honeycomb\" for a job, because pins are not cut but ground one by one and bundled, got \"pins\"");
   if (std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape))
     throw InputError(design.where("substrate.kind"), "must not be \"offset\" for a job");
+  if (std::holds_alternative<geometry::StepFace>(design.part().substrate->shape))
+    throw InputError(design.where("substrate.kind"), "must not be \"step\" for a job");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
     throw InputError(Field{"workpiece"},
                      "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));

@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "design/io/design_json.h"
+#include "studies/inspect/io/step_face_texts.h"
 
 namespace retrace::studies {
 namespace {
@@ -338,6 +339,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
+  add_step_faces(i.design, json);
   if (i.shells) json["shells"] = shells_json(i);
   if (i.form) json["form"] = form_json(*i.form);
   json["boundary"] = i.boundary;
@@ -352,6 +354,7 @@ std::string mesh_text(const Inspection& i) {
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
   text += entrance_text(i);
+  text += step_faces_text(i.design);
   text += shells_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
@@ -393,6 +396,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);
+  text += step_faces_text(i.design);
   text += shells_text(i);
   text += form_text(i);
   text += light_text(i);
