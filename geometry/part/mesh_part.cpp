@@ -66,7 +66,7 @@ Ring take_ring(std::map<std::uint32_t, std::uint32_t>& next) {
 
 class PartBuilder {
  public:
-  explicit PartBuilder(const TriangleMesh& mesh) : mesh_(mesh) {
+  PartBuilder(const TriangleMesh& mesh, std::optional<double> rounding_mm) : mesh_(mesh) {
     Vec3 lower = Vec3::Constant(INFINITY);
     Vec3 upper = Vec3::Constant(-INFINITY);
     for (const Vec3& p : mesh.vertices) {
@@ -75,7 +75,8 @@ class PartBuilder {
     }
     top_z_ = upper.z();
     tolerance_mm_ = kSinglePrecision * (upper - lower).norm();
-    rounding_mm_ = kVertexRounding * std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff());
+    rounding_mm_ = rounding_mm.value_or(kVertexRounding *
+                                        std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()));
   }
 
   Part build() {
@@ -389,8 +390,8 @@ TriangleMesh with_reversed_orientation(const TriangleMesh& mesh) {
   return turned;
 }
 
-Part part_of_mesh(const TriangleMesh& mesh) {
-  return PartBuilder(mesh).build();
+Part part_of_mesh(const TriangleMesh& mesh, std::optional<double> rounding_mm) {
+  return PartBuilder(mesh, rounding_mm).build();
 }
 
 }  // namespace retrace::geometry
