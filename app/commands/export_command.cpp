@@ -102,7 +102,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   files.add_named("--out", file, [&] { return studies::solid_text(solid, format); });
   files.prepare();
   if (format == studies::SolidFormat::step && !common.quiet)
-    if (const std::string notice = studies::step_notice(solid); !notice.empty()) print_to_stderr(notice);
+    if (const std::string notice = studies::step_notice(solid); !notice.empty()) print_to_stderr("retrace: " + notice);
   return files.write(studies::solid_json(solid, file), studies::solid_table(solid), solid.warnings);
 }
 

@@ -130,7 +130,7 @@ void set_exact_boundary(Solid& solid, geometry::ExactBoundary boundary) {
 }
 
 /// Sets the boundary of a solid to that of a part, including the curved entrance face of the design if it has one.
-void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request, EntranceModel model) {
+void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request, SolidEntrance model) {
   solid.elements_full = part.elements_full;
   solid.elements_partial = part.elements_partial;
   if (!solid.design.entrance) {
@@ -140,7 +140,7 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
   const geometry::Entrance entrance = design::entrance_of_design(solid.design, part);
   try {
     const auto* const surface = std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&entrance);
-    if (model == EntranceModel::exact && surface != nullptr) {
+    if (model == SolidEntrance::exact && surface != nullptr) {
       set_exact_boundary(
           solid, geometry::exact_boundary(part, **surface, design::closed_form_of_entrance(solid.design, part),
                                           request.surface_error_mm.value_or(kSplineErrorMm)));
@@ -159,7 +159,7 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
 
 /// Returns the solid with its mesh, for a design that is read from a mesh file or consists of zones. Repairs of the
 /// mesh are reported in the warnings.
-Solid solid_of_mesh(Solid solid, const SolidRequest& request, EntranceModel model) {
+Solid solid_of_mesh(Solid solid, const SolidRequest& request, SolidEntrance model) {
   if (solid.what != SolidKind::array)
     design::require_supported(
         solid.design, {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
@@ -179,7 +179,7 @@ std::string name_of(SolidKind kind) {
   return std::string(kKinds[static_cast<std::size_t>(kind)]);
 }
 
-Solid make_solid(const design::Design& design, const SolidRequest& request, EntranceModel model) {
+Solid make_solid(const design::Design& design, const SolidRequest& request, SolidEntrance model) {
   requests::check(request);
   design::require_supported(design, {.what = "retrace export", .solids = true, .entrances = true, .wet_backs = true});
   Solid solid;

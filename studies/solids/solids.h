@@ -24,7 +24,7 @@ enum class SolidKind {
 std::string name_of(SolidKind kind);
 
 /// Description of a curved entrance face in a solid.
-enum class EntranceModel {
+enum class SolidEntrance {
   triangles,  ///< triangles within a tolerance
   exact       ///< one face on the exact surface or on a B-spline within a tolerance, for STEP
 };
@@ -41,7 +41,7 @@ struct Solid {
   /// and for moulds.
   std::optional<double> surface_error_mm;
   geometry::BoundaryMesh mesh;
-  /// Boundary with an exact entrance face. Set only for EntranceModel::exact and a curved entrance face that is not a
+  /// Boundary with an exact entrance face. Set only for SolidEntrance::exact and a curved entrance face that is not a
   /// mesh. Volume and area are then those of this boundary, and `mesh` is empty.
   std::optional<geometry::ExactSolid> exact;
   std::int64_t elements_full = 0;
@@ -65,6 +65,6 @@ inline constexpr double kSplineErrorMm = 1e-6;
 /// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, if
 ///     the solid has more than kMaxSolidElements elements, or if one element is requested behind a curved entrance face
 Solid make_solid(const design::Design& design, const SolidRequest& request,
-                 EntranceModel model = EntranceModel::triangles);
+                 SolidEntrance model = SolidEntrance::triangles);
 
 }  // namespace retrace::studies

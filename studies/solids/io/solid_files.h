@@ -20,8 +20,8 @@ SolidFormat solid_format(const std::string& file);
 std::string solid_text(const Solid& solid, SolidFormat format);
 
 /// Returns the description of a curved entrance face that a format can store.
-inline EntranceModel entrance_model(SolidFormat format) {
-  return format == SolidFormat::step ? EntranceModel::exact : EntranceModel::triangles;
+inline SolidEntrance solid_entrance(SolidFormat format) {
+  return format == SolidFormat::step ? SolidEntrance::exact : SolidEntrance::triangles;
 }
 
 /// Returns a line with the size of a STEP file and the time for writing it, or an empty text if both are small.
