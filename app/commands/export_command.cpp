@@ -97,7 +97,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   const auto format = file.empty() ? studies::SolidFormat::stl : studies::solid_format(file);
   const auto request = request_of<SolidRequest>(options.fields, common);
   const design::Design design = design::read_design(options.design, common.overrides);
-  const studies::Solid solid = studies::make_solid(design, request, studies::entrance_model(format));
+  const studies::Solid solid = studies::make_solid(design, request, studies::solid_entrance(format));
   ResultFiles files(without_folder(common), files_read({design}));
   files.add_named("--out", file, [&] { return studies::solid_text(solid, format); });
   files.prepare();
