@@ -209,6 +209,8 @@ geometry::Part part_of_design(const Design& design, Warnings* warnings) {
   try {
     geometry::Part part = geometry::part_of_mesh(oriented.mesh, oriented.rounding_mm);
     check_thickness(design, part);
+    if (design.entrance && !part.entrance_pieces.empty())
+      throw InputError("must have a convex entrance face without holes if the design has an [entrance_surface]");
     return part;
   } catch (const InputError& error) {
     throw InputError(design.where(mesh_file_key(design)), fmt::format("{}: {}", design.mesh()->file.string(), error.what()));

@@ -34,8 +34,8 @@ TriangleMesh with_reversed_orientation(const TriangleMesh& mesh);
 
 /// Builds a part that has the shape of a closed mesh. The x and y coordinates of the mesh are kept. The mesh is shifted
 /// along z so that the highest point of the back has z = 0. The highest face of the mesh becomes the entrance face: it
-/// must be horizontal and have a convex outline. The rest of the mesh must be below the entrance face and within its
-/// outline, and the sides are therefore vertical.
+/// must be one horizontal face, which may have notches and holes. The rest of the mesh must be below the entrance face and
+/// within its outline, and the sides are therefore vertical.
 ///
 /// The facets are the plane regions of the back; how a region is triangulated has no effect. Horizontal regions become
 /// flat back, vertical regions become walls, and all other regions become retro facets. A region that is not convex is

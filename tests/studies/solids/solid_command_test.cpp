@@ -47,6 +47,21 @@ TEST(SolidPart, ReturnsTheLightOfTheDesignThatWasExported) {
   }
 }
 
+/// The outline of the part has a notch and a hole.
+TEST(SolidPart, OutlinesWithNotchesAndHolesReturnTheLightOfTheDesign) {
+  const TemporaryFolder folder;
+  folder.write("direct.toml",
+               "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[outline]\n"
+               "polygon_mm = [[0, 0], [4, 0], [4, 3], [2.5, 3], [2.5, 1.7], [1.3, 1.7], [1.3, 3], [0, 3]]\n"
+               "holes_mm = [[3, 0.8, 0.5]]\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n");
+  folder.write("solid.toml", kSolid);
+  ASSERT_EQ(retrace(folder, {"export", "direct.toml", "part.step", "--quiet"}).code, 0);
+  const std::vector<double> expected = rre_of(folder, "direct.toml");
+  const std::vector<double> found = rre_of(folder, "solid.toml");
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-6) << k;
+}
+
 TEST(SolidPart, HasThePhotometryOfTheDesignThatWasExported) {
   const TemporaryFolder folder;
   folder.write("direct.toml", kCubes);
