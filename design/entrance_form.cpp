@@ -16,6 +16,8 @@ using geometry::Vec2, geometry::Vec3;
 
 namespace {
 
+constexpr double kMaxExactRadius_mm = 1e5;
+
 /// Returns the rotation from the frame of the entrance surface to the frame of the part.
 Eigen::Matrix3d part_from_surface_of(const EntranceForm& form) {
   return geometry::rotation_of(form.inclination) *
@@ -49,13 +51,13 @@ std::optional<geometry::FaceSurface> closed_form_of(const EntranceForm& form, co
   return std::visit(
       Overloaded{[&](const geometry::PlaneEntrance&) { return Found(geometry::ExactPlane{origin_mm, normal}); },
                  [&](const geometry::CylinderEntrance& cylinder) {
-                   if (cylinder.conic != 0.0) return Found();
+                   if (cylinder.conic != 0.0 || std::abs(cylinder.radius_mm) > kMaxExactRadius_mm) return Found();
                    const Curvature at = curvature_at(origin_mm, normal, cylinder.radius_mm);
                    return Found(geometry::ExactCylinder{at.centre_mm, axes.col(1), at.towards,
                                                         std::abs(cylinder.radius_mm), cylinder.radius_mm > 0.0});
                  },
                  [&](const geometry::SphereEntrance& sphere) {
-                   if (sphere.conic != 0.0) return Found();
+                   if (sphere.conic != 0.0 || std::abs(sphere.radius_mm) > kMaxExactRadius_mm) return Found();
                    const Curvature at = curvature_at(origin_mm, normal, sphere.radius_mm);
                    return Found(geometry::ExactSphere{at.centre_mm, at.towards, std::abs(sphere.radius_mm),
                                                       sphere.radius_mm > 0.0});
