@@ -9,6 +9,7 @@
 
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
+#include "design/mesh_keys.h"
 #include "geometry/io/substrate_rows.h"
 
 namespace retrace::design {
@@ -177,7 +178,10 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                                 design.where(geometry::substrate_shape_key(*array.part.substrate)),
                                 what + " is not available for elements on a [substrate], only for elements on a plane");
                         },
-                        [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
+                        [&](const PartMesh&) {
+                          const MeshKeys keys = mesh_keys_of(design);
+                          refuse_solid(mesh_file_key(design), keys.is_solid ? "solid of a file" : "mesh");
+                        },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
                         [&](const ZonedPart&) {
                           if (!capabilities.zones) refuse_solid("zone", "part with zones");

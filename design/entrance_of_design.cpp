@@ -104,4 +104,10 @@ geometry::Entrance entrance_of_design(const Design& design, const geometry::Part
   });
 }
 
+std::optional<geometry::FaceSurface> closed_form_of_entrance(const Design& design, const geometry::Part& part) {
+  const EntranceForm* const form = design.entrance->form();
+  if (form == nullptr) return std::nullopt;
+  return closed_form_of(*form, origin_of(*design.entrance, part));
+}
+
 }  // namespace retrace::design

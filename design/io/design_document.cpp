@@ -7,6 +7,7 @@
 #include "core/schema/writer.h"
 #include "design/file_names.h"
 #include "design/io/design_format.h"
+#include "design/mesh_keys.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/outline/plan_region.h"
@@ -254,9 +255,14 @@ void set_shape(Document& document, const Design& design) {
                           if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
                         },
                         [&](const PartMesh& mesh) {
+                          const MeshKeys keys = mesh_keys_of(design);
                           Keys part(document, "part");
-                          part.set_word("mesh", mesh.name);
-                          part.set("scale", mesh_scale(design, "part"));
+                          part.set_word(keys.is_solid ? "solid" : "mesh", mesh.name);
+                          part.set("rotate_deg", list_of(keys.rotate_deg));
+                          part.set_choice("face", keys.faces_down ? 1 : 0);
+                          if (keys.is_solid) return part.set("chord_mm", keys.chord_mm);
+                          part.set("scale", keys.scale);
+                          part.set("weld_mm", keys.weld_mm);
                           part.set("allow_open", mesh.allow_open);
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },

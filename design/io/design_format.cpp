@@ -12,16 +12,18 @@ using namespace schema;
 constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
 constexpr Condition kNoMesh =
     is_absent("part.mesh", "not allowed together with part.mesh, because part.mesh describes the whole part");
+constexpr Condition kNoSolid =
+    is_absent("part.solid", "not allowed together with part.solid, because part.solid describes the whole part");
 constexpr Condition kNoPlate = is_absent(
     "part.plate_mm", "not allowed together with part.plate_mm, because part.plate_mm describes the whole part");
 
-constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
-constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
+constexpr Condition kWithElements[] = {kNoMesh, kNoSolid, kNoPlate};
+constexpr Condition kWithPlanes[] = {kNoMesh, kNoSolid, kNoPlate, kTableOfNoBall};
 constexpr Condition kPartTable[] = {kTableOfNoBall};
 constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", whose surfaces are smooth")};
-constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
+constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
                                         is(kKind, kRtp)};
 
 const Table kSurfaceTables[] = {
@@ -68,6 +70,7 @@ const Table kCoatingTables[] = {{.name = "facets",
                                  .when = kEntranceTable}};
 
 constexpr Condition kWithZones[] = {kNoMesh,
+                                    kNoSolid,
                                     kNoPlate,
                                     kTableOfNoBall,
                                     is_absent("substrate", "not allowed together with [substrate]"),
@@ -75,7 +78,7 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("form", "not allowed together with [form]"),
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
-constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
+constexpr Condition kWithOutline[] = {kNoMesh, kNoSolid, kNoPlate, kTableOfNoBall,
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
 constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf", "file"};
 constexpr Rule kOutlineRules[] = {
@@ -135,7 +138,7 @@ const Table kTables[] = {
      .presence = Presence::list,
      .when = kWithZones},
     {.name = "part",
-     .meaning = "Mesh or plate that replaces the elements, or planes of individual facets.",
+     .meaning = "Mesh, solid or plate that replaces the elements, or planes of individual facets.",
      .rows = part_rows(),
      .presence = Presence::optional,
      .when = kPartTable},

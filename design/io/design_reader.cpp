@@ -34,7 +34,8 @@ std::array<double, 2> pair_of(const Document& document, std::string_view key) {
 }
 
 PartMesh read_mesh(const Document& document) {
-  return {document.text("part.mesh"), document.file("part.mesh"), document.flag("part.allow_open"),
+  const std::string_view key = document.has("part.solid") ? "part.solid" : "part.mesh";
+  return {document.text(key), document.file(key), document.has("part.mesh") && document.flag("part.allow_open"),
           document.number_if("body.thickness_mm")};
 }
 
@@ -50,7 +51,7 @@ ElementArray read_elements(const Document& document) {
 Shape read_shape(const Document& document) {
   if (document.has("part.plate_mm"))
     return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
-  if (document.has("part.mesh")) return read_mesh(document);
+  if (document.has("part.mesh") || document.has("part.solid")) return read_mesh(document);
   if (has_zones(document)) return read_zones(document);
   if (has_elements(document)) return read_elements(document);
   return read_balls(document);
@@ -314,7 +315,7 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// Keys whose values are names of files. A store of study results lists the files of a design in this order and is
 /// valid only for this list. New keys must therefore be appended at the end.
-constexpr std::array<std::string_view, 13> kFilesOfStores = {"part.mesh",
+constexpr std::array<std::string_view, 14> kFilesOfStores = {"part.mesh",
                                                              "array.mask",
                                                              "surface.height_map",
                                                              "part.facets",
@@ -326,7 +327,8 @@ constexpr std::array<std::string_view, 13> kFilesOfStores = {"part.mesh",
                                                              "outline.dxf",
                                                              "outline.file",
                                                              "entrance_surface.file",
-                                                             "substrate.file"};
+                                                             "substrate.file",
+                                                             "part.solid"};
 
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides) {

@@ -101,7 +101,8 @@ void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
 }  // namespace
 
 bool has_elements(const Document& document) {
-  return !document.has("part.mesh") && !document.has("part.plate_mm") && document.text("element.kind") != "ball";
+  return !document.has("part.mesh") && !document.has("part.solid") && !document.has("part.plate_mm") &&
+         document.text("element.kind") != "ball";
 }
 
 double min_thickness_mm(const PartSpec& part) {

@@ -24,7 +24,7 @@ inline constexpr std::string_view kRoundFaceKeys[] = {"element.chamfer_mm",
                                                       "outline.polygon_mm",
                                                       "outline.dxf",
                                                       "outline.file"};
-/// Keys that check_hollow() checks. The first key marks a hollow cube corner. The next kRefusedKeysOfHollow - 1 keys
+/// Keys that check_hollow() checks. The first key marks a hollow cube corner. The next kRefusedKeysOfHollow keys
 /// are not allowed for hollow cube corners.
 inline constexpr std::string_view kHollowKeys[] = {
     "element.hollow",      "body.material",          "body.catalogue",   "body.refractive_index",

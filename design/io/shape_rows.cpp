@@ -155,21 +155,46 @@ constexpr Row kArrayRows[] = {
     {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";
-constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate)};
+constexpr std::string_view kBesideSolid = "not allowed together with solid, because a part has only one shape";
+constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate), is_absent("solid", kBesideSolid)};
+constexpr Condition kSolidOnly[] = {is_absent("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
+constexpr Condition kWithSolid[] = {is_absent("plate_mm", kBesidePlate), is_given("solid")};
 constexpr Condition kFacetsOnly[] = {is_absent("plate_mm", kBesidePlate),
-                                     is_absent("mesh", "not allowed together with mesh, which determines all facets")};
+                                     is_absent("mesh", "not allowed together with mesh, which determines all facets"),
+                                     is_absent("solid", "not allowed together with solid, which determines all facets")};
+constexpr Words kFacesOfFile = {"up", "down"};
+constexpr double kNoRotations[] = {0.0, 0.0, 0.0};
+
+constexpr Row kRotateRow = {
+    "rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"}, std::span<const double>(kNoRotations),
+    "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then about z of the part frame."};
+constexpr Row kFaceRow = {"face", Word{kFacesOfFile}, "up",
+                          "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
+                          "rotated by 180 degrees about x, so that its entrance face points towards +z."};
 
 constexpr Row kPartRows[] = {
-    {"mesh", File{"an STL file"}, kNone,
-     "STL mesh of the whole part, binary or ASCII, in the part frame. It replaces the elements. It has at most 10 "
-     "million triangles.",
+    {"mesh", File{"an STL or OBJ file"}, kNone,
+     "Triangle mesh of the whole part: STL (binary or ASCII), or OBJ if the name ends in `.obj`. It replaces the "
+     "elements. It has at most 10 million triangles.",
      kMeshOnly},
+    {"solid", File{"a STEP file"}, kNone,
+     "STEP file (AP203, AP214 or AP242) with the whole part as a solid. It replaces the elements. Its units are those "
+     "of the file. Plane faces are exact.",
+     kSolidOnly},
     {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
+    where(kRotateRow, kWithMesh),
+    where(kRotateRow, kWithSolid),
+    where(kFaceRow, kWithMesh),
+    where(kFaceRow, kWithSolid),
+    {"weld_mm", Number{{.low = 0.0, .high = 1.0}}, 0.0,
+     "Maximum distance of vertices that are merged to one vertex. 0: only vertices at the same position are merged.",
+     kWithMesh},
+    {"chord_mm", Number{{.low = 1e-6, .high = 1.0}}, 0.001,
+     "Maximum distance between curved faces of the solid and the triangles by which they are traced.", kWithSolid},
     {"allow_open", Flag{}, false,
-     "true: a mesh with defects is traced. Openings are closed by flat patches, and bodies that intersect are united. "
-     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect. Results apply to the "
-     "repaired mesh.",
+     "true: a mesh with defects is traced. Openings are closed by flat patches. A mesh that touches itself along edges "
+     "is traced unchanged. A warning reports each defect. Results apply to the repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kPlausibleSize, "lengths, along x and y"}, kNone,
      "Lengths along x and y of a plate that replaces the elements. The flat back of the plate, on z = 0, is its only "

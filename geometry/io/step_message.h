@@ -19,9 +19,10 @@ namespace retrace::geometry {
 /// Word for the kind of result, as command-line argument of the program.
 inline constexpr std::string_view kStepSurfaceWord = "surface";
 inline constexpr std::string_view kStepOutlineWord = "outline";
+inline constexpr std::string_view kStepSolidWord = "solid";
 
 /// First number of a result.
-enum class StepResult { refused, surface, outline };
+enum class StepResult { refused, surface, outline, solid };
 
 /// Surface before it is prepared for evaluation.
 struct StepPatches {

@@ -12,10 +12,6 @@
 
 namespace retrace::geometry {
 
-inline constexpr std::size_t kMaxStepBytes = 256U << 20;
-/// Maximum memory and processor time for reading a STEP file.
-inline constexpr std::size_t kMaxStepMemoryBytes = std::size_t{1} << 30;
-inline constexpr double kMaxStepSeconds = 10.0;
 /// Maximum deviation of the patches from the surfaces of the file.
 inline constexpr double kMaxStepDeviationMm = 1e-6;
 inline constexpr double kMaxStepDeviationArcsec = 0.1;

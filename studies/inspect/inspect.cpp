@@ -15,6 +15,7 @@
 #include "geometry/elements/lattice.h"
 #include "geometry/entrance/curved_boundary.h"
 #include "raytrace/balls/ball_forms.h"
+#include "requests/descriptions.h"
 
 namespace retrace::studies {
 namespace {
@@ -252,7 +253,9 @@ WetReport report_wet_back(const design::Design& design, const design::OpticalMod
 
 }  // namespace
 
-Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library) {
+Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library,
+                   const InspectRequest& request) {
+  requests::check(request);
   if (design.balls()) return inspect_balls(design, library);
   const design::OpticalModel model = design::make_model(design, library);
   const geometry::Part& part = model.part;
@@ -265,6 +268,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   result.facet_area_mm2 = part.retro_facet_area_mm2;
   result.entrance_area_mm2 = part.entrance_area_mm2;
   if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
+  if (!part.period_mm) result.tool = report_tool(part, model.entrance, request);
   if (!design.shells.empty()) result.shells = report_shells(design, model);
   if (design.zoned()) {
     add_zones(result, model);

@@ -1,5 +1,6 @@
 // Program that reads one STEP file for retrace (step_reader.cpp starts it):
 //   retrace_step_reader surface|outline FILE FACE SEW_MM ROTATION_X ROTATION_Y ROTATION_Z [ORIGIN_X ORIGIN_Y ORIGIN_Z]
+//   retrace_step_reader solid FILE CHORD_MM
 // It limits its own memory and time, and writes its result to standard output (step_message.h). OpenCASCADE is used in
 // this program only, because damaged files can make it crash or allocate memory without limit.
 
@@ -9,16 +10,19 @@
 
 #include <Standard_Failure.hxx>
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/io/reader_program.h"
 #include "geometry/io/step_message.h"
 #include "geometry/io/step_program/step_fit.h"
 #include "geometry/io/step_program/step_shapes.h"
-#include "geometry/io/step_reader.h"
+#include "geometry/io/step_program/step_triangles.h"
 
 namespace retrace::geometry {
 namespace {
@@ -26,6 +30,7 @@ namespace {
 constexpr int kFirstAngle = 5;
 constexpr int kFirstCoordinate = 8;
 constexpr int kLast = 11;
+constexpr int kWordsOfSolid = 4;
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
@@ -113,6 +118,27 @@ void put_outline(StepMessageWriter& writer, const StepChoice& choice) {
   });
 }
 
+void put_solid(StepMessageWriter& writer, const std::vector<std::string>& words) {
+  const SolidMesh solid = solids_of_file(words[2], std::strtod(words[3].c_str(), nullptr));
+  writer.put(static_cast<double>(StepResult::solid));
+  writer.put(static_cast<double>(solid.solids));
+  writer.put_list(solid.mesh.vertices, [&](const Vec3& p) { writer.put(p); });
+  writer.put_list(solid.planes, [&](const std::optional<FacetPlane>& plane) {
+    writer.put(plane ? 1.0 : 0.0);
+    writer.put(plane ? plane->normal : Vec3(Vec3::Zero()));
+    writer.put(plane ? plane->offset_mm : 0.0);
+  });
+  writer.put_list(solid.mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
+    for (const std::uint32_t corner : triangle) writer.put(static_cast<double>(corner));
+  });
+  for (const std::uint32_t face : solid.face_of) writer.put(static_cast<double>(face));
+}
+
+void put_result(StepMessageWriter& writer, const std::vector<std::string>& words) {
+  if (words[1] == kStepSolidWord) return put_solid(writer, words);
+  (words[1] == kStepOutlineWord ? put_outline : put_surface)(writer, choice_of(words));
+}
+
 std::string refusal(std::string_view text) {
   StepMessageWriter writer;
   writer.put(static_cast<double>(StepResult::refused));
@@ -123,7 +149,7 @@ std::string refusal(std::string_view text) {
 std::string result_of(const std::vector<std::string>& words) {
   try {
     StepMessageWriter writer;
-    (words[1] == kStepOutlineWord ? put_outline : put_surface)(writer, choice_of(words));
+    put_result(writer, words);
     return writer.text();
   } catch (const std::bad_alloc&) {
     return refusal("must be readable within 1 GiB of memory: export fewer faces from the CAD program");
@@ -152,7 +178,7 @@ bool write_all(int descriptor, std::string_view text) {
 int main(int count, char** arguments) {
   using namespace retrace::geometry;
   const std::vector<std::string> words(arguments, arguments + count);
-  if (words.size() != kLast && words.size() != kFirstCoordinate) return 2;
+  if (words.size() != kLast && words.size() != kFirstCoordinate && words.size() != kWordsOfSolid) return 2;
   limit_resources();
   // OpenCASCADE prints messages to standard output, which must contain only the result.
   const int output = ::dup(STDOUT_FILENO);

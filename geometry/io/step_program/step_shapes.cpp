@@ -76,24 +76,6 @@ std::size_t count_of(std::string_view text, std::string_view word) {
   return count;
 }
 
-/// Checks the text of a STEP file before OpenCASCADE reads it, because OpenCASCADE accepts truncated files.
-void check_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse_step("must be readable, but it cannot be opened");
-  std::ostringstream content;
-  content << stream.rdbuf();
-  const std::string text = std::move(content).str();
-  if (text.substr(0, 1024).find("ISO-10303-21;") == std::string::npos)
-    refuse_step("must be a STEP file, which begins with ISO-10303-21");
-  constexpr std::size_t kEndBytes = 65536;
-  if (text.find("END-ISO-10303-21", text.size() < kEndBytes ? 0 : text.size() - kEndBytes) == std::string::npos)
-    refuse_step("is truncated: END-ISO-10303-21 is missing at its end");
-  const std::size_t faces = count_of(text, "ADVANCED_FACE") + count_of(text, "FACE_SURFACE");
-  if (faces == 0) refuse_step("must contain faces, but has none");
-  if (faces > kMaxStepFaces)
-    refuse_step("must have at most " + std::to_string(kMaxStepFaces) + " faces, but has " + std::to_string(faces));
-}
-
 /// Face of the file with the properties by which designs select it.
 struct Candidate {
   TopoDS_Face face;
@@ -164,7 +146,7 @@ std::string hex_of(const Quantity_Color& colour) {
 class StepContents {
  public:
   explicit StepContents(const StepChoice& choice) {
-    check_text(choice.file);
+    check_step_text(choice.file);
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
     if (reader_.ReadFile(choice.file.c_str()) != IFSelect_RetDone)
       refuse_step("must be a STEP file, but it cannot be understood");
@@ -517,6 +499,23 @@ Eigen::Matrix3d rotation_of(const StepChoice& choice) {
     rotation = one * rotation;
   }
   return rotation;
+}
+
+void check_step_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse_step("must be readable, but it cannot be opened");
+  std::ostringstream content;
+  content << stream.rdbuf();
+  const std::string text = std::move(content).str();
+  if (text.substr(0, 1024).find("ISO-10303-21;") == std::string::npos)
+    refuse_step("must be a STEP file, which begins with ISO-10303-21");
+  constexpr std::size_t kEndBytes = 65536;
+  if (text.find("END-ISO-10303-21", text.size() < kEndBytes ? 0 : text.size() - kEndBytes) == std::string::npos)
+    refuse_step("is truncated: END-ISO-10303-21 is missing at its end");
+  const std::size_t faces = count_of(text, "ADVANCED_FACE") + count_of(text, "FACE_SURFACE");
+  if (faces == 0) refuse_step("must contain faces, but has none");
+  if (faces > kMaxStepFaces)
+    refuse_step("must have at most " + std::to_string(kMaxStepFaces) + " faces, but has " + std::to_string(faces));
 }
 
 ChosenFaces choose_faces(const StepChoice& choice) {

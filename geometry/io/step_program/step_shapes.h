@@ -4,6 +4,7 @@
 
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopoDS_Face.hxx>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct ChosenFaces {
   std::string unit;                                         ///< unit of length of the file
   double gap_mm = 0.0;                                      ///< maximum width of a gap that was closed
 };
+
+/// Checks the text of a STEP file before OpenCASCADE reads it, because OpenCASCADE accepts truncated files.
+/// \throw std::runtime_error if the file is truncated, is no STEP file, or has no faces or too many faces
+void check_step_text(const std::filesystem::path& file);
 
 /// Reads a STEP file, selects faces and joins them. Several faces are sewn together.
 /// \throw std::runtime_error, with a text that begins with "must", "is" or "has", if the file is damaged or has no such

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -234,6 +236,88 @@ nlohmann::ordered_json wet_back_json(const Inspection& i) {
   return json;
 }
 
+/// Returns the name of faces with a role in documents.
+std::string_view face_name(geometry::FacetRole role) {
+  switch (role) {
+    case geometry::FacetRole::entrance: return "entrance";
+    case geometry::FacetRole::retro_facet: return "retro_facet";
+    case geometry::FacetRole::flat_back: return "flat_back";
+    case geometry::FacetRole::inner_wall: return "inner_wall";
+    case geometry::FacetRole::border_wall: return "border_wall";
+    case geometry::FacetRole::side: break;
+  }
+  return "side";
+}
+
+nlohmann::ordered_json position_json(const geometry::Vec3& p) {
+  return nlohmann::ordered_json::array({p.x(), p.y(), p.z()});
+}
+
+/// Smallest, mean and largest angle between the axes of the elements and the normal of the entrance face.
+struct PinAngles {
+  double min_deg = 180.0;
+  double mean_deg = 0.0;
+  double max_deg = 0.0;
+};
+
+PinAngles pin_angles(const ToolReport& tool) {
+  PinAngles angles;
+  for (const PinAxis& pin : tool.pin_axes) {
+    angles.min_deg = std::min(angles.min_deg, pin.angle_deg());
+    angles.max_deg = std::max(angles.max_deg, pin.angle_deg());
+    angles.mean_deg += pin.angle_deg() / static_cast<double>(tool.pin_axes.size());
+  }
+  return angles;
+}
+
+nlohmann::ordered_json tool_json(const ToolReport& tool) {
+  nlohmann::ordered_json draft = nlohmann::ordered_json::array();
+  for (const DraftOfFaces& of : tool.draft)
+    draft.push_back({{"faces_of", face_name(of.role)},
+                     {"faces", of.faces},
+                     {"area_mm2", of.area_mm2},
+                     {"min_draft_deg", of.min_draft_deg},
+                     {"below_limit", of.below_limit},
+                     {"undercuts", of.undercuts},
+                     {"undercut_mm2", of.undercut_mm2}});
+  nlohmann::ordered_json json = {{"min_wall_mm", tool.wall.thickness_mm},
+                                 {"min_wall_back_mm", position_json(tool.wall.back_mm)},
+                                 {"min_wall_entrance_mm", position_json(tool.wall.entrance_mm)},
+                                 {"demoulding", position_json(tool.demoulding)},
+                                 {"min_draft_deg", tool.min_draft_deg()},
+                                 {"below_limit", tool.below_limit()},
+                                 {"undercuts", tool.undercuts()},
+                                 {"draft", draft},
+                                 {"optical_area_fraction", tool.optical_area_fraction}};
+  if (!tool.pin_axes.empty()) {
+    const PinAngles angles = pin_angles(tool);
+    json["pin_axes"] = {{"pins", tool.pin_axes.size()},
+                        {"min_deg", angles.min_deg},
+                        {"mean_deg", angles.mean_deg},
+                        {"max_deg", angles.max_deg}};
+  }
+  return json;
+}
+
+/// Returns the lines of the report for the toolmaker.
+std::string tool_text(const Inspection& i) {
+  if (!i.tool) return {};
+  const ToolReport& tool = *i.tool;
+  const auto steepest = std::ranges::min_element(tool.draft, {}, &DraftOfFaces::min_draft_deg);
+  std::string text = fmt::format("  smallest wall       {} mm at x = {}, y = {} mm\n", fixed(tool.wall.thickness_mm, 6),
+                                 fixed(tool.wall.back_mm.x(), 4), fixed(tool.wall.back_mm.y(), 4));
+  text += fmt::format("  smallest draft      {} degrees ({}); {} faces below the limit, {} undercuts\n",
+                      fixed(steepest->min_draft_deg, 3), face_name(steepest->role), tool.below_limit(),
+                      tool.undercuts());
+  text += fmt::format("  optical area        {} % of the plan\n", fixed(100.0 * tool.optical_area_fraction, 3));
+  if (!tool.pin_axes.empty()) {
+    const PinAngles angles = pin_angles(tool);
+    text += fmt::format("  element axes        {} to {} degrees from the normal of the entrance surface\n",
+                        fixed(angles.min_deg, 3), fixed(angles.max_deg, 3));
+  }
+  return text;
+}
+
 std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, min_radius_mm] = i.substrate->measures;
@@ -342,6 +426,7 @@ std::string inspect_json(const Inspection& i) {
   add_step_faces(i.design, json);
   if (i.shells) json["shells"] = shells_json(i);
   if (i.form) json["form"] = form_json(*i.form);
+  if (i.tool) json["tool"] = tool_json(*i.tool);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/2", json, i.warnings);
 }
@@ -360,6 +445,7 @@ std::string mesh_text(const Inspection& i) {
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += light_text(i);
   text += coatings_text(i);
+  text += tool_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
 }
@@ -404,8 +490,27 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += wet_back_text(i);
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_fraction, 3));
+  text += tool_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
+}
+
+std::string pin_axes_csv(const Inspection& i) {
+  if (!i.tool || i.tool->pin_axes.empty()) return {};
+  CsvWriter csv("x_mm,y_mm,angle_deg,azimuth_deg,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z");
+  for (const PinAxis& pin : i.tool->pin_axes)
+    csv.row(pin.centre_mm.x(), pin.centre_mm.y(), pin.angle_deg(), pin.azimuth_deg(), pin.axis.x(), pin.axis.y(),
+            pin.axis.z(), pin.normal.x(), pin.normal.y(), pin.normal.z());
+  return csv.text();
+}
+
+std::string draft_csv(const Inspection& i) {
+  if (!i.tool || i.tool->steep_faces.empty()) return {};
+  CsvWriter csv("faces_of,draft_deg,area_mm2,x_mm,y_mm,z_mm");
+  for (const SteepFace& face : i.tool->steep_faces)
+    csv.row(face_name(face.role), face.draft_deg, face.area_mm2, face.centroid_mm.x(), face.centroid_mm.y(),
+            face.centroid_mm.z());
+  return csv.text();
 }
 
 }  // namespace retrace::studies

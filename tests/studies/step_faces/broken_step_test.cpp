@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "geometry/io/reader_program.h"
 #include "geometry/io/step_reader.h"
 #include "tests/studies/step_faces/step_texts.h"
 #include "tests/support/refusals.h"
