@@ -6,29 +6,30 @@
 namespace retrace::raytrace {
 namespace {
 
-// Maximum distance, in rows and columns, of the pixels whose variances are averaged. A single pixel has too few
-// training samples.
+// Number of neighbouring pixels on each side that are included in the mean variance around a pixel.
 constexpr std::size_t kAveragedPixels = 2;
-// Total number of additional points for noisy pixels, divided by the total number of evenly distributed points.
-constexpr double kAdditionalPoints = 1.7;
-// The number of additional points of a pixel is proportional to a power of its standard deviation s. This constant is
-// the exponent. The noise of a picture is the sum of s / sqrt(N) over all pixels, where N is the number of points. For
-// a given total number of points, the exponent 2/3 minimises this noise.
+// Number of samples of a pixel at which the variance of these samples and the mean variance around the pixel have equal
+// weights. With fewer samples, the variance of a single pixel is uncertain.
+constexpr double kKnownSamples = 4.0;
+// Ratio of the points for noisy pixels to the evenly distributed points of a pass.
+constexpr double kAdditionalPoints = 1.1;
+// Exponent e of the standard deviation s: the number of additional points of a pixel is proportional to s^e. The noise
+// of a picture is the sum of the standard errors s / sqrt(N) of its pixels. For a given total number of points, the
+// noise is minimal for e = 2/3.
 constexpr double kExponent = 2.0 / 3.0;
 // Maximum number of points of a pixel, divided by the minimum number.
 constexpr double kMaxRatio = 64.0;
 // If additional points reduce the variance by less than this factor, all pixels have the same number of points.
 constexpr double kMinGain = 2.0;
 
-/// Returns the standard deviation of a single sample for each pixel. It is computed from the mean variance of the pixel
-/// and its neighbours.
-std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::uint32_t samples,
-                                  std::size_t columns) {
+double variance_of(const PixelMoments& m) {
+  return std::max(0.0, m.squares - m.sum * m.sum / m.count) / (m.count - 1.0);
+}
+
+/// Returns the standard deviation of a single sample for each pixel. The variance of the pixel's own samples is
+/// combined with the mean variance of the neighbouring pixels.
+std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::size_t columns) {
   const std::size_t rows = moments.size() / columns;
-  const auto variance = [&](std::size_t pixel) {
-    const PixelMoments& m = moments[pixel];
-    return std::max(0.0, m.squares - m.sum * m.sum / samples) / (samples - 1.0);
-  };
   const auto first = [](std::size_t at) { return at - std::min(at, kAveragedPixels); };
   std::vector<double> deviations;
   deviations.reserve(moments.size());
@@ -38,19 +39,21 @@ std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std:
       const std::size_t last_column = std::min(column + kAveragedPixels, columns - 1);
       double sum = 0.0;
       for (std::size_t r = first(row); r <= last_row; ++r)
-        for (std::size_t c = first(column); c <= last_column; ++c) sum += variance(r * columns + c);
+        for (std::size_t c = first(column); c <= last_column; ++c) sum += variance_of(moments[r * columns + c]);
       const std::size_t count = (last_row - first(row) + 1) * (last_column - first(column) + 1);
-      deviations.push_back(std::sqrt(sum / static_cast<double>(count)));
+      const double mean = sum / static_cast<double>(count);
+      const PixelMoments& own = moments[row * columns + column];
+      deviations.push_back(
+          std::sqrt((own.count * variance_of(own) + kKnownSamples * mean) / (own.count + kKnownSamples)));
     }
   return deviations;
 }
 
 }  // namespace
 
-PixelPoints::PixelPoints(const std::vector<PixelMoments>& moments, std::uint32_t samples, std::size_t columns,
-                         std::uint32_t min_points)
+PixelPoints::PixelPoints(const std::vector<PixelMoments>& moments, std::size_t columns, std::uint32_t min_points)
     : PixelPoints(moments.size(), min_points) {
-  const std::vector<double> deviations = deviations_of(moments, samples, columns);
+  const std::vector<double> deviations = deviations_of(moments, columns);
   double sum = 0.0;
   double squares = 0.0;
   double wanted = 0.0;

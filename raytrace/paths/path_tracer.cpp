@@ -245,9 +245,9 @@ double PathWalker::reach_side(const State& state, double limit, Step& step) cons
   for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
     const double towards = setup_.sides[k].normal.dot(state.direction);
     if (towards <= 0.0) continue;
-    const double t = (setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position)) / towards;
-    if (t >= limit) continue;
-    limit = std::max(t, 0.0);
+    const double gap_mm = setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position);
+    if (gap_mm >= limit * towards) continue;
+    limit = std::max(gap_mm / towards, 0.0);
     step.end = End::side;
     step.side = k;
   }

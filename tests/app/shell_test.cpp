@@ -201,6 +201,15 @@ TEST_F(Shell, CameraSeesThePartThroughThem) {
             "design.toml:5: array.extent");
 }
 
+// The light of a headlamp crosses the four surfaces of the plate, at angles of incidence below a degree.
+TEST_F(Shell, RoadsShowThePartBehindThem) {
+  const Arguments road = {"image", "design.toml", "--road", "--road-distance-m=100"};
+  const auto r_a = [&](const std::string& design) {
+    return run(design, road)["views"][0]["reflectors"][0]["r_a_cd_per_lx_m2"][0].get<double>();
+  };
+  EXPECT_NEAR(r_a(kCubes + kPlate) / r_a(kCubes), std::pow(0.96, 4.0), 1e-3);
+}
+
 TEST_F(Shell, OthersRefuseThem) {
   const std::string design = kCubes + kPlate;
   const std::string where = "design.toml:11: shell[1]";
@@ -208,8 +217,7 @@ TEST_F(Shell, OthersRefuseThem) {
   EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
     EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", option, "-o", "out"}), where);
-  for (const char* kind : {"--detector", "--road"})
-    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--detector", "-o", "out"}), where);
   EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
   EXPECT_EQ(refusal(design, {"explore", "design.toml", "-o", "out.html"}), where);
   EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}), where);

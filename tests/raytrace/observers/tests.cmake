@@ -10,4 +10,5 @@ retrace_test(raytrace_tests
 # Tests of light behind curved entrance surfaces. They are a separate program, because they trace many elements.
 retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/lens_wave_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/rough_lens_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_io)
