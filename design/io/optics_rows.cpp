@@ -184,7 +184,7 @@ constexpr Row kDetectorRows[] = {
 constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
                                        is(kKind, kRtp)};
 constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                      is(kKind, geometry::kCubeKindsOfDesigns)};
+                                      is(kKind, only(geometry::kElementKinds, "hexagonal_icc", "ruled"))};
 constexpr Condition kArcsecOfCube[] = {
     is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
     is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),

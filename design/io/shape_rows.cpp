@@ -11,6 +11,7 @@ constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
 
 constexpr Words kBallArrangements = {"single", "packed"};
 constexpr auto kPacked = only(kBallArrangements, "packed");
+constexpr auto kRuledArrangement = only(geometry::kArrangementWords, "ruled");
 constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
@@ -25,13 +26,16 @@ constexpr Condition kArrayOfNoBall =
 constexpr Condition kNotRound =
     is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm");
 
+constexpr Condition kNotRuled =
+    is_not(kKind, geometry::kRuled, "not allowed for element.kind = \"ruled\", whose cells are described by [grooves]");
+
 constexpr Condition kPrismOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall,
+constexpr Condition kCantOnly[] = {kElementOfNoBall, kNotRuled,
                                    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
@@ -41,7 +45,7 @@ constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
 constexpr Row kElementRows[] = {
     {"kind", Word{geometry::kElementKinds}, kRequired,
      "Kind of the elements: prisms, hexagonal or triangular cube corners, a single cube corner with a circular face "
-     "(`\"round_icc\"`), or balls."},
+     "(`\"round_icc\"`), cells between sets of V-grooves (`\"ruled\"`), or balls."},
     where(kSizeKeys.base_mm, kPrismOnly),
     where(kSizeKeys.width_mm, kPrismOnly),
     where(geometry::kApexAngleKey, kPrismOnly),
@@ -92,6 +96,7 @@ constexpr Row kElementRows[] = {
 constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
 constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
 constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
+constexpr Condition kOfRuled[] = {is(kKind, geometry::kRuled)};
 constexpr Condition kOfBalls[] = {is(kKind, kBall)};
 constexpr Condition kOfRound[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
@@ -126,6 +131,8 @@ constexpr Row kArrayRows[] = {
      "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kRuledArrangement}, "ruled",
+     "Arrangement of the cells. The grooves of a ruled array determine the positions of its cells.", kOfRuled},
     {"arrangement", Word{kSingle}, "single",
      "Arrangement of the element. A cube corner with a circular face is single.", kOfRound},
     {"arrangement", Word{kBallArrangements}, "packed",
