@@ -59,19 +59,19 @@ constexpr Row kGrooveSetRows[] = {
     {"azimuth_deg", Number{kAzimuth}, kRequired, "Direction of the grooves, measured from +x towards +y.", kOfCustom},
     {"spacing_mm", NumberOrNumbers{{.low = 1e-6, .high = 1e6}}, kRequired,
      "Distance between neighbouring grooves, or a list of distances that repeats.", kOfCustom},
-    {"half_angle_deg", Number{kHalfAngle}, kRequired, "Angle between the vertical and both faces of each groove.",
+    {"half_angle_deg", Number{kHalfAngle}, kRequired,
+     "Angle between the vertical and both faces of each groove, or `[[left, right], ...]`: angles of the left and the "
+     "right face of each groove, seen along the azimuth. The list repeats.",
      kOfCustom},
-    {"half_angle_deg", NumberRows{2, kHalfAngle, 1, kMaxGrooves, "pairs"}, kNone,
-     "`[[left, right], ...]`: angles of the left and the right face of each groove, seen along the azimuth. The list "
-     "repeats.",
-     kOfCustom},
+    {"half_angle_deg", NumberRows{2, kHalfAngle, 1, kMaxGrooves, "pairs"}, kNone, "Angles of each groove.", kOfCustom},
     {"offset_mm", Number{kGrooveOffset}, 0.0,
      "Displacement of the grooves to the left, seen along the azimuth. Without it, one groove of a set of the form "
      "`custom` passes through the origin, which is the centre of a finite part."},
-    {"half_angle_error_arcmin", Number{kHalfAngleError}, 0.0, "Angle that is added to both half-angles."},
+    {"half_angle_error_arcmin", Number{kHalfAngleError}, 0.0,
+     "Angle that is added to both half-angles, or `[[left, right], ...]`: angles that are added to the half-angles of "
+     "each groove. The list repeats. Such a list spreads the returned light."},
     {"half_angle_error_arcmin", NumberRows{2, kHalfAngleError, 1, kMaxGrooves, "pairs"}, kNone,
-     "`[[left, right], ...]`: angles that are added to the half-angles of each groove. The list repeats. Such a list "
-     "spreads the returned light."},
+     "Angles that are added to the half-angles of each groove."},
     {"spacing_error_um", Number{kMicrometres}, 0.0, "Length that is added to all spacings of the set."},
     {"depth_error_um", Number{kMicrometres}, 0.0,
      "Depth by which the grooves of this set are deeper than those of other sets with smaller values."}};
