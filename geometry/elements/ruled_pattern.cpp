@@ -34,8 +34,8 @@ struct ProfileLine {
   bool is_bottom = false;  ///< true for the flat or a chord of the arc
 };
 
-/// Groove of a set. Its profile is the lower envelope of its lines.
-struct Groove {
+/// VGroove of a set. Its profile is the lower envelope of its lines.
+struct VGroove {
   double position_mm = 0.0;
   double left_cot = 0.0;  ///< steepness of the left face
   double right_cot = 0.0;
@@ -99,7 +99,7 @@ class Ruling {
   double narrowest_mm() const { return *std::min_element(set_.spacing_mm.begin(), set_.spacing_mm.end()); }
   double flattest_cot() const {
     double least = own_.front().left_cot;
-    for (const Groove& groove : own_) least = std::min({least, groove.left_cot, groove.right_cot});
+    for (const VGroove& groove : own_) least = std::min({least, groove.left_cot, groove.right_cot});
     return least;
   }
 
@@ -111,7 +111,7 @@ class Ruling {
     while (position(number) > position_mm) --number;
     return number;
   }
-  const Groove& groove(std::int64_t number) const {
+  const VGroove& groove(std::int64_t number) const {
     const auto count = static_cast<std::int64_t>(grooves_);
     return own_[static_cast<std::size_t>(((number % count) + count) % count)];
   }
@@ -126,8 +126,8 @@ class Ruling {
   double lowest_mm() const {
     double lowest = set_.rise_mm;
     for (std::size_t m = 0; m < grooves_; ++m) {
-      const Groove& here = own_[m];
-      const Groove& next = own_[(m + 1) % grooves_];
+      const VGroove& here = own_[m];
+      const VGroove& next = own_[(m + 1) % grooves_];
       const double spacing = set_.spacing_mm[m % set_.spacing_mm.size()];
       lowest = std::min(lowest, set_.rise_mm - spacing / (1.0 / here.left_cot + 1.0 / next.right_cot));
     }
@@ -138,7 +138,7 @@ class Ruling {
   GrooveSet set_;
   Vec2 normal_;
   std::size_t grooves_ = 1;
-  std::vector<Groove> own_;
+  std::vector<VGroove> own_;
   double period_mm_ = 0.0;
 };
 
@@ -297,7 +297,7 @@ class CellBuilder {
       const double reach = (ruling.set().rise_mm - floor_mm_) / ruling.flattest_cot();
       const std::int64_t before = ruling.last_before(centre);
       const auto add = [&](std::int64_t number, bool is_left) {
-        const Groove& groove = ruling.groove(number);
+        const VGroove& groove = ruling.groove(number);
         const double position = ruling.position(number);
         CellProfile profile = {
             facet_of(ruling, position, {ruling.set().rise_mm, is_left ? -groove.left_cot : groove.right_cot, false})};
