@@ -112,7 +112,8 @@ void expect_envelope(const std::vector<GrooveSet>& sets, const std::optional<dou
     EXPECT_NEAR(of_cell, geometry::area(cell.outline), 1e-9);
     covered += of_cell;
   }
-  if (pattern.period_mm) EXPECT_NEAR(covered, pattern.period_mm->prod(), 1e-9);
+  if (!pattern.period_mm) return;
+  EXPECT_NEAR(covered, pattern.period_mm->prod(), 1e-9);
 }
 
 TEST(RuledPattern, FacesOfAllFormsArePerpendicular) {
