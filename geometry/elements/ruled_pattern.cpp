@@ -244,7 +244,8 @@ class CellBuilder {
       for (std::size_t k = 0; k < profiles[j].size(); ++k)
         for (Polygon& part : highest(outline, profiles, j, k)) {
           CellFacet facet = profiles[j][k];
-          facet.outline = std::move(part);
+          facet.outline = without_short_sides(std::move(part), outline);
+          if (facet.outline.empty()) continue;
           if (!facet.is_edge && !facet.is_flat) facet.centroid_mm = centroid(facet.outline);
           cell.facets.push_back(std::move(facet));
         }
@@ -327,6 +328,20 @@ class CellBuilder {
   }
   static bool is_same(const HeightPlane& a, const HeightPlane& b, double tolerance_mm) {
     return (a.slope - b.slope).norm() <= kCommensurate && std::abs(a.height_mm - b.height_mm) <= tolerance_mm;
+  }
+
+  /// Moves points near the corners of a cell onto these corners, and merges points near each other. Rounding errors
+  /// cause such points where three planes meet. Returns an empty polygon if less than three points remain.
+  Polygon without_short_sides(Polygon polygon, const Polygon& outline) const {
+    Polygon kept;
+    for (Vec2& p : polygon) {
+      for (const Vec2& corner : outline)
+        if ((p - corner).norm() <= tolerance_mm_) p = corner;
+      if (kept.empty() || (p - kept.back()).norm() > tolerance_mm_) kept.push_back(p);
+    }
+    while (kept.size() > 1 && (kept.front() - kept.back()).norm() <= tolerance_mm_) kept.pop_back();
+    if (kept.size() < 3) kept.clear();
+    return kept;
   }
 
   /// Returns the portions of an outline where plane k of profile j is the surface, as convex polygons.
