@@ -44,6 +44,7 @@ std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
                    // In an array of triangular cube corners, every second cell is rotated by 180 degrees.
                    return of_cubes(cube, array.arrangement == Arrangement::single ? 120.0 : 60.0);
                  },
+                 [](const geometry::RuledCells&) { return std::optional<AzimuthSymmetry>(); },
                  [&](const geometry::RoundCube& cube) { return cube.outline ? std::nullopt : of_cubes(cube, 120.0); }},
       part.element);
 }

@@ -7,6 +7,7 @@
 #include "core/schema/writer.h"
 #include "design/file_names.h"
 #include "design/io/design_format.h"
+#include "design/io/groove_reader.h"
 #include "design/mesh_keys.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
@@ -96,7 +97,11 @@ void set_element(Document& document, const PartSpec& part, bool is_hollow) {
                  },
                  [&](const HexagonalCube& cube) { set_cube(keys, "hexagonal_icc", cube.aperture_mm, cube.cant); },
                  [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); },
-                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm, is_hollow); }},
+                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm, is_hollow); },
+                 [&](const geometry::RuledCells& ruled) {
+                   keys.set_word("kind", "ruled");
+                   set_grooves(document, ruled);
+                 }},
       part.element);
 }
 
@@ -468,6 +473,7 @@ void set_light(Document& document, const Design& design) {
 }
 
 void set_angle_errors(Keys& keys, const PartSpec& part) {
+  if (std::holds_alternative<geometry::RuledCells>(part.element)) return;
   const auto& [dihedral, tilt] = part.angle_errors;
   const bool is_prism = std::holds_alternative<RtpElement>(part.element);
   keys.set("dihedral_error_arcmin", is_prism ? Value(dihedral[0]) : list_of(dihedral));

@@ -2,6 +2,7 @@
 
 #include "design/io/design_rows.h"
 #include "design/io/design_rules.h"
+#include "design/io/groove_rows.h"
 #include "geometry/io/substrate_rows.h"
 
 namespace retrace::design {
@@ -23,8 +24,8 @@ constexpr Condition kPartTable[] = {kTableOfNoBall};
 constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", whose surfaces are smooth")};
-constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                        is(kKind, kRtp)};
+constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                        is_absent("part.plate_mm", kNotWithMesh), is(kKind, kRtp)};
 
 const Table kSurfaceTables[] = {
     {.name = "scratches",
@@ -103,6 +104,19 @@ const Table kEntranceFaceTables[] = {
      .layout = Layout::in_line,
      .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
 
+constexpr Condition kRuledOnly[] = {kNoMesh, kNoPlate,
+                                    is(kKind, geometry::kRuled, "only allowed for element.kind = \"ruled\"")};
+/// Returns the description of the table of one groove set.
+Table groove_table(std::size_t number) {
+  return {.name = kGrooveSets[number],
+          .meaning =
+              "Set of parallel grooves. The form `custom` has two to four sets, a to d. In the other forms, which "
+              "have the sets a, b and c, the table changes the set that the form determines.",
+          .rows = groove_set_rows(),
+          .presence = Presence::optional};
+}
+const Table kGrooveTables[] = {groove_table(0), groove_table(1), groove_table(2), groove_table(3)};
+
 constexpr Row kRootRows[] = {
     {"title", Text{}, kNone, "Title of the design. It is used as the name of the design's curves in plots."}};
 const Table kTables[] = {
@@ -111,6 +125,13 @@ const Table kTables[] = {
      .rows = element_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
+    {.name = "grooves",
+     .meaning = "Grooves of ruled cells. In the part frame, the surface is the upper envelope of the groove faces, and "
+                "the bottoms of the deepest grooves are on z = 0.",
+     .rows = groove_rows(),
+     .tables = kGrooveTables,
+     .presence = Presence::optional,
+     .when = kRuledOnly},
     {.name = "array",
      .meaning = "Arrangement of the elements over the part.",
      .rows = array_rows(),

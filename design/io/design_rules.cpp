@@ -12,6 +12,7 @@
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
 #include "design/io/entrance_checks.h"
+#include "design/io/groove_reader.h"
 #include "design/io/optics_checks.h"
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
@@ -19,6 +20,7 @@
 #include "design/io/zone_reader.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/substrate_checks.h"
 #include "geometry/io/substrate_rows.h"
 
@@ -84,6 +86,11 @@ struct FootprintOf {
   /// Returns the footprint of a round cube corner, which is its circular face.
   Footprint operator()(const RoundCube& cube) const {
     return {cube.diameter_mm, cube.diameter_mm, 0.25 * std::numbers::pi * cube.diameter_mm * cube.diameter_mm};
+  }
+  /// Returns the bounding box of the largest cell and the mean area of the cells.
+  Footprint operator()(const geometry::RuledCells& ruled) const {
+    const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(ruled)).size();
+    return {size.x(), size.y(), ruled.pattern->mean_cell_mm2};
   }
   /// Returns the footprint of a triangle whose apex is at the centre of the part. A vertex of the triangle is on the x
   /// axis, one radius from the apex. The part therefore extends over two radii along x.
@@ -340,7 +347,8 @@ void check_thickness(const Document& document, const PartSpec& part) {
 }
 
 void check_bowl(const Document& document) {
-  if (document.has("part.mesh") || document.has("part.solid") || document.has("part.plate_mm") || has_elements(document))
+  if (document.has("part.mesh") || document.has("part.solid") || document.has("part.plate_mm") ||
+      has_elements(document))
     return;
   const double most_deg = read_balls(document).max_mirror_half_angle_deg();
   const auto given_deg = document.number_if("element.mirror_half_angle_deg");
@@ -451,8 +459,27 @@ constexpr schema::Words kEntranceKeys = {"entrance_surface.kind",      "entrance
                                          "entrance_surface.mesh",      "array.extent",
                                          "entrance_surface.radius_mm", "entrance_surface.radii_mm"};
 
+constexpr schema::Words kGrooveKeys = {"grooves.form",       "grooves.base_angles_deg", "grooves.depth_mm",
+                                       "grooves.spacing_mm", "grooves.bottom_flat_um",  "grooves.bottom_radius_um",
+                                       "array.extent"};
+constexpr schema::Words kRuledKeys = {
+    "surface.dihedral_error_arcmin", "surface.facet_tilt_arcmin", kRandomTilt,
+    "surface.root_radius_um",        "surface.root_chamfer_um",   "surface.rim_radius_um",
+    "surface.rim_chamfer_um",        "array.partial_elements",    "part.facets"};
+
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
+    schema::Check{kGrooveKeys,
+                  "The grooves of ruled cells must leave cells, and their bottoms must be narrower than the spacing. "
+                  "The base angles add up to 180 degrees. In an infinite array, the grooves must have a common period "
+                  "along x and y with at most 20000 cells.",
+                  check_by<check_grooves>},
+    schema::Check{
+        kRuledKeys,
+        "Ruled cells have no angle errors, rims or random tilts in `[surface]`, because `[grooves]` describes "
+        "their faces. Roots may be rounded if every cell has three faces and nothing else. The border cuts "
+        "the cells. A table of planes, a `[substrate]` and a `[form]` are not allowed.",
+        check_by<of_part<check_ruled_part>>},
     schema::Check{kSquareKeys, "Elements of the arrangement `checker` are square: `base_mm` equals `width_mm`.",
                   check_by<of_array<check_square>>},
     schema::Check{

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/schema/reader.h"
+#include "design/io/groove_reader.h"
 #include "design/io/outline_reader.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
@@ -33,6 +34,7 @@ geometry::Element element_of(const Document& document) {
   if (kind == "rtp")
     return geometry::RtpElement{document.number("element.base_mm"), document.number("element.width_mm"),
                                 document.number("element.apex_angle_deg")};
+  if (kind == "ruled") return read_grooves(document);
   const geometry::Cant cant{document.number("element.cant_deg"), document.number("element.cant_azimuth_deg")};
   if (kind == "round_icc") return round_cube_of(document, cant);
   const double aperture_mm = document.number("element.aperture_mm");

@@ -11,6 +11,7 @@ constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
 
 constexpr Words kBallArrangements = {"single", "packed"};
 constexpr auto kPacked = only(kBallArrangements, "packed");
+constexpr auto kRuledArrangement = only(geometry::kArrangementWords, "ruled");
 constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
@@ -25,13 +26,16 @@ constexpr Condition kArrayOfNoBall =
 constexpr Condition kNotRound =
     is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm");
 
+constexpr Condition kNotRuled =
+    is_not(kKind, geometry::kRuled, "not allowed for element.kind = \"ruled\", whose cells are described by [grooves]");
+
 constexpr Condition kPrismOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall,
+constexpr Condition kCantOnly[] = {kElementOfNoBall, kNotRuled,
                                    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
@@ -41,7 +45,7 @@ constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
 constexpr Row kElementRows[] = {
     {"kind", Word{geometry::kElementKinds}, kRequired,
      "Kind of the elements: prisms, hexagonal or triangular cube corners, a single cube corner with a circular face "
-     "(`\"round_icc\"`), or balls."},
+     "(`\"round_icc\"`), cells between sets of V-grooves (`\"ruled\"`), or balls."},
     where(kSizeKeys.base_mm, kPrismOnly),
     where(kSizeKeys.width_mm, kPrismOnly),
     where(geometry::kApexAngleKey, kPrismOnly),
@@ -90,6 +94,7 @@ constexpr Row kElementRows[] = {
 constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
 constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
 constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
+constexpr Condition kOfRuled[] = {is(kKind, geometry::kRuled)};
 constexpr Condition kOfBalls[] = {is(kKind, kBall)};
 constexpr Condition kOfRound[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
@@ -124,6 +129,8 @@ constexpr Row kArrayRows[] = {
      "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kRuledArrangement}, "ruled",
+     "Arrangement of the cells. The grooves of a ruled array determine the positions of its cells.", kOfRuled},
     {"arrangement", Word{kSingle}, "single",
      "Arrangement of the element. A cube corner with a circular face is single.", kOfRound},
     {"arrangement", Word{kBallArrangements}, "packed",
@@ -160,15 +167,17 @@ constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate), is_absen
 constexpr Condition kSolidOnly[] = {is_absent("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
 constexpr Condition kWithSolid[] = {is_absent("plate_mm", kBesidePlate), is_given("solid")};
-constexpr Condition kFacetsOnly[] = {is_absent("plate_mm", kBesidePlate),
-                                     is_absent("mesh", "not allowed together with mesh, which determines all facets"),
-                                     is_absent("solid", "not allowed together with solid, which determines all facets")};
+constexpr Condition kFacetsOnly[] = {
+    is_absent("plate_mm", kBesidePlate),
+    is_absent("mesh", "not allowed together with mesh, which determines all facets"),
+    is_absent("solid", "not allowed together with solid, which determines all facets")};
 constexpr Words kFacesOfFile = {"up", "down"};
 constexpr double kNoRotations[] = {0.0, 0.0, 0.0};
 
-constexpr Row kRotateRow = {
-    "rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"}, std::span<const double>(kNoRotations),
-    "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then about z of the part frame."};
+constexpr Row kRotateRow = {"rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"},
+                            std::span<const double>(kNoRotations),
+                            "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then "
+                            "about z of the part frame."};
 constexpr Row kFaceRow = {"face", Word{kFacesOfFile}, "up",
                           "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
                           "rotated by 180 degrees about x, so that its entrance face points towards +z."};

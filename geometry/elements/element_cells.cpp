@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/outline/plan_region.h"
 
 namespace retrace::geometry {
@@ -217,7 +218,8 @@ Cell element_in_place_of(const Cell& cell, const Element& element, const AngleEr
       Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, cell.at_mm, cell.rotated); },
                  [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, cell.at_mm); },
                  [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, cell.at_mm, cell.rotated); },
-                 [&](const RoundCube& e) { return round_cube_cell(e, errors, cell.at_mm); }},
+                 [&](const RoundCube& e) { return round_cube_cell(e, errors, cell.at_mm); },
+                 [&](const RuledCells&) { return cell; }},
       element);
 }
 
@@ -225,7 +227,8 @@ Cell element_cell(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, Vec2::Zero()); },
                                [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, Vec2::Zero()); },
                                [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, Vec2::Zero()); },
-                               [&](const RoundCube& e) { return round_cube_cell(e, errors, Vec2::Zero()); }},
+                               [&](const RoundCube& e) { return round_cube_cell(e, errors, Vec2::Zero()); },
+                               [&](const RuledCells& e) { return largest_cell(*e.pattern); }},
                     element);
 }
 
@@ -233,19 +236,26 @@ double element_depth_mm(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_depth(e, errors); },
                                [](const HexagonalCube& e) { return 2.0 * rise_of_dihedral_edge(e.aperture_mm); },
                                [](const TriangularCube& e) { return rise_of_dihedral_edge(e.aperture_mm); },
-                               [](const RoundCube& e) { return 2.0 * rise_of_dihedral_edge(e.diameter_mm); }},
+                               [](const RoundCube& e) { return 2.0 * rise_of_dihedral_edge(e.diameter_mm); },
+                               [](const RuledCells& e) { return -e.pattern->lowest_mm; }},
                     element);
 }
 
 Cant cant_of(const Element& element) {
-  return std::visit(Overloaded{[](const RtpElement&) { return Cant{}; }, [](const auto& cube) { return cube.cant; }},
+  return std::visit(Overloaded{[](const RtpElement&) { return Cant{}; }, [](const RuledCells&) { return Cant{}; },
+                               [](const auto& cube) { return cube.cant; }},
                     element);
+}
+
+std::vector<Cell> distinct_cells(const Element& element, const AngleErrors& errors) {
+  if (const auto* const ruled = std::get_if<RuledCells>(&element)) return ruled->pattern->cells;
+  return {element_cell(element, errors)};
 }
 
 double steepest_facet_deg(const Element& element, const AngleErrors& errors) {
   double steepest = 0.0;
-  for (const CellFacet& facet : element_cell(element, errors).facets)
-    steepest = std::max(steepest, std::atan(facet.plane.slope.norm()));
+  for (const Cell& cell : distinct_cells(element, errors))
+    for (const CellFacet& facet : cell.facets) steepest = std::max(steepest, std::atan(facet.plane.slope.norm()));
   return steepest * 180.0 / std::numbers::pi;
 }
 

@@ -57,7 +57,15 @@ struct RoundCube {
   std::shared_ptr<const PlanRegion> outline = {};
 };
 
-using Element = std::variant<RtpElement, HexagonalCube, TriangularCube, RoundCube>;
+struct RuledPattern;
+
+/// Cells between sets of parallel V-grooves that a ruling machine cuts into the master of a sheeting. The grooves fill
+/// the array, so that the cells are not repeated by an arrangement of their own.
+struct RuledCells {
+  std::shared_ptr<const RuledPattern> pattern;  ///< never null (geometry/elements/ruled_pattern.h)
+};
+
+using Element = std::variant<RtpElement, HexagonalCube, TriangularCube, RoundCube, RuledCells>;
 
 /// Errors of the facets' angles, in arc minutes. Facets are rotated about the root or apex, which does not move. The
 /// element's outline in plan stays nominal, so its rims end above or below z = 0. If both kinds of error are given,

@@ -83,7 +83,7 @@ void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
 }
 
 FacetRole role_of(const Cell& cell, const CellFacet& facet) {
-  return cell.is_element || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
+  return (cell.is_element && !facet.is_flat) || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
 }
 
 class Tiler {

@@ -23,6 +23,7 @@ std::vector<double> own_errors(const Study& study, const PointValues& values) {
   const Candidate candidate = make_candidate(study, values);
   if (!candidate.design().elements()) return {};
   const geometry::PartSpec& part = candidate.design().part();
+  if (std::holds_alternative<geometry::RuledCells>(part.element)) return {};
   const auto& errors = part.angle_errors.dihedral_error_arcmin;
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
   return {errors.begin(), is_prism ? errors.begin() + 1 : errors.end()};

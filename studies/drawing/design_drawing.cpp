@@ -80,6 +80,7 @@ void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
 }
 
 void add_element(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
+  if (std::holds_alternative<geometry::RuledCells>(spec.element)) return;
   if (std::holds_alternative<RtpElement>(spec.element))
     add_prism(panel.dimensions, spec, a);
   else

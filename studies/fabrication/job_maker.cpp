@@ -157,6 +157,8 @@ void check_zones(const design::Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const InputLocation where = design.where(schema::path_of_entry("zone", z));
+    if (std::holds_alternative<geometry::RuledCells>(zones[z].elements.element))
+      throw InputError(where, "ruled cells cannot be cut, because the processes of retrace do not rule grooves");
     if (is_prism(zones[z].elements))
       throw InputError(where, "only cube corners can be cut in a part with zones, got prisms");
     if (zones[z].elements.element.index() != zones.front().elements.element.index())

@@ -282,7 +282,10 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
     return result;
   }
   if (!model.optics.facet_form.is_plane()) result.form = design::report_form(design, model.optics.facet_form);
-  const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
+  const auto* const ruled = std::get_if<geometry::RuledCells>(&design.part().element);
+  const double aperture = ruled != nullptr ? ruled->pattern->mean_cell_mm2
+                                           : geometry::area(geometry::aperture_outline(design.part().element));
+  if (ruled != nullptr) result.ruled = report_ruled(*ruled->pattern);
   result.full_element_area_fraction = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {
     add_base(result, part);
@@ -294,6 +297,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   if (model.wet_elements) result.wet_back = report_wet_back(design, model);
   result.dead_zone_fraction = geometry::edge_fraction(geometry::finished_cell(
       geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
+  if (result.ruled && design.part().edges.is_sharp()) result.dead_zone_fraction = result.ruled->dead_fraction;
   result.boundary = boundary_finding(design, model);
   add_warnings(result, part);
   return result;

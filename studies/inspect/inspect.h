@@ -19,6 +19,7 @@
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 #include "studies/inspect/entrance_state_report.h"
+#include "studies/inspect/ruled_report.h"
 #include "studies/inspect/shell_report.h"
 #include "studies/inspect/tool_report.h"
 #include "studies/inspect/zone_report.h"
@@ -84,6 +85,7 @@ struct Inspection {
   std::optional<EntranceReport> entrance;
   std::optional<ShellsReport> shells;  ///< shells in front of the part; empty if there are none
   std::optional<WetReport> wet_back;
+  std::optional<RuledReport> ruled;        ///< cells of a ruled array; empty for other kinds of elements
   std::optional<ZonesReport> zones;        ///< zones of the part; empty if it has none
   std::optional<design::FormReport> form;  ///< form of the facets; empty for plane facets
   CoatingReports coating;

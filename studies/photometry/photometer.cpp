@@ -10,6 +10,7 @@
 #include "design/io/design_reader.h"
 #include "design/light_symmetry.h"
 #include "design/part_of_design.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
 #include "raytrace/observers/coefficients.h"
@@ -115,6 +116,8 @@ double width_of_cells_mm(const design::Design& design) {
     return std::min(prism->base_mm, prism->width_mm);
   if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;
   if (const auto* cube = std::get_if<geometry::RoundCube>(&design.part().element)) return cube->diameter_mm;
+  if (const auto* ruled = std::get_if<geometry::RuledCells>(&design.part().element))
+    return geometry::aperture_of_mean_cell_mm(*ruled->pattern);
   return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 

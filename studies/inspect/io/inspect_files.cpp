@@ -111,6 +111,46 @@ std::string form_text(const Inspection& i) {
                      i.form->tilt_mrad > 1e-6 ? fmt::format(", tilted by {} mrad", fixed(i.form->tilt_mrad, 3)) : "");
 }
 
+/// Returns the lines of the report about the cells of a ruled array.
+std::string ruled_text(const Inspection& i) {
+  constexpr std::size_t kMaxLines = 12;
+  if (!i.ruled) return {};
+  std::string text = fmt::format("  ruled cells         {} {}\n", i.ruled->cells.size(),
+                                 i.ruled->is_period ? "per period" : "around the origin; the grooves have no period");
+  for (std::size_t k = 0; k < std::min(kMaxLines, i.ruled->cells.size()); ++k) {
+    const RuledCellReport& cell = i.ruled->cells[k];
+    const auto angles = [](const std::array<double, 3>& deg, int digits) {
+      return fmt::format("{} {} {}", fixed(deg[0], digits), fixed(deg[1], digits), fixed(deg[2], digits));
+    };
+    std::string line = fmt::format("{} faces", cell.faces);
+    if (cell.dihedral_deg) line += fmt::format(", dihedral angles {}", angles(*cell.dihedral_deg, 4));
+    if (cell.cant_deg)
+      line += fmt::format(", cant {} towards {}", fixed(*cell.cant_deg, 3), fixed(cell.cant_azimuth_deg, 1));
+    if (cell.base_deg) line += fmt::format(", base {}", angles(*cell.base_deg, 3));
+    text += fmt::format("  {:<20}{} degrees; effective aperture {} %, truncated {} %\n", fmt::format("cell {}", k + 1),
+                        line, fixed(100.0 * cell.effective_aperture, 2), fixed(100.0 * cell.truncated_fraction, 2));
+  }
+  if (i.ruled->cells.size() > kMaxLines)
+    text += fmt::format("  {:<20}{} more cells are in the JSON document\n", "", i.ruled->cells.size() - kMaxLines);
+  return text;
+}
+
+nlohmann::ordered_json ruled_json(const RuledReport& report) {
+  nlohmann::ordered_json cells = nlohmann::ordered_json::array();
+  for (const RuledCellReport& cell : report.cells) {
+    nlohmann::ordered_json json = {{"area_mm2", cell.area_mm2}, {"faces", cell.faces}};
+    if (cell.dihedral_deg) json["dihedral_deg"] = *cell.dihedral_deg;
+    if (cell.cant_deg) json["cant_deg"] = *cell.cant_deg;
+    if (cell.cant_deg) json["cant_azimuth_deg"] = cell.cant_azimuth_deg;
+    if (cell.base_deg) json["base_deg"] = *cell.base_deg;
+    json["effective_aperture"] = cell.effective_aperture;
+    json["truncated_fraction"] = cell.truncated_fraction;
+    json["bottom_fraction"] = cell.bottom_fraction;
+    cells.push_back(json);
+  }
+  return {{"is_period", report.is_period}, {"cells", cells}};
+}
+
 std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
   return fmt::format("  entrance surface    {}, z = {} to {} mm, slopes up to {} degrees\n",
@@ -420,6 +460,7 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_fraction"] = i.dead_zone_fraction;
+  if (i.ruled) json["ruled"] = ruled_json(*i.ruled);
   if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
@@ -480,6 +521,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of the area\n", fixed(100.0 * i.full_element_area_fraction, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
+  text += ruled_text(i);
   text += substrate_text(i);
   text += entrance_text(i);
   text += step_faces_text(i.design);
