@@ -35,3 +35,7 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_sample_test.cpp
   LIBRARIES retrace::photometry retrace::photometry_by_rays retrace::rre)
+# Tests of designs whose cells interfere, in the program of the tests of their far field.
+retrace_test(lattice_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_interference_test.cpp support/refusals.cpp
+  LIBRARIES retrace::photometry nlohmann_json::nlohmann_json)
