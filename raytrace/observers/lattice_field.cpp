@@ -29,7 +29,7 @@ constexpr double kLinesOfMap = 32.0;
 // Number of points of a Gauss rule: a minimum, and an increase per period of the finest fringe.
 constexpr double kMinPoints = 4.0;
 constexpr double kPointsPerFringe = 2.0;
-constexpr double kMaxPoints = 64.0;
+constexpr std::size_t kMaxPoints = 64;
 
 /// Point of a quadrature rule over the displacements of the source.
 struct SourceNode {
@@ -39,13 +39,28 @@ struct SourceNode {
 
 std::size_t points_across(double length_rad, double detail_rad) {
   // The displacement d of the source changes the direction relative to the pattern of a cell by 2 d.
-  return static_cast<std::size_t>(
-      std::clamp(std::ceil(kMinPoints + kPointsPerFringe * 2.0 * length_rad / detail_rad), kMinPoints, kMaxPoints));
+  return static_cast<std::size_t>(std::clamp(std::ceil(kMinPoints + kPointsPerFringe * 2.0 * length_rad / detail_rad),
+                                             kMinPoints, static_cast<double>(kMaxPoints)));
 }
 
+/// Gauss rules that are computed one time.
+class GaussRules {
+ public:
+  /// \pre count <= kMaxPoints
+  const GaussRule& operator()(std::size_t count) {
+    GaussRule& rule = rules_[count];
+    if (rule.nodes.empty()) rule = gauss_legendre(count);
+    return rule;
+  }
+
+ private:
+  std::array<GaussRule, kMaxPoints + 1> rules_;
+};
+
 /// Adds the points of a disc. The weights add up to its area times `factor`.
-void add_disc(const Vec2& centre, double radius, double detail_rad, double factor, std::vector<SourceNode>& nodes) {
-  const GaussRule radial = gauss_legendre(points_across(radius, detail_rad));
+void add_disc(const Vec2& centre, double radius, double detail_rad, double factor, GaussRules& rules,
+              std::vector<SourceNode>& nodes) {
+  const GaussRule& radial = rules(points_across(radius, detail_rad));
   const auto round = static_cast<std::size_t>(std::ceil(pi * static_cast<double>(points_across(radius, detail_rad))));
   for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
     const double r = radius * radial.nodes[k];
@@ -61,13 +76,13 @@ void add_disc(const Vec2& centre, double radius, double detail_rad, double facto
 /// Adds the points of a circular segment: the points of a disc whose coordinate along `axis`, relative to the centre,
 /// is at least `from`. The weights add up to its area times `factor`.
 void add_segment(const Vec2& centre, const Vec2& axis, double radius, double from, double detail_rad, double factor,
-                 std::vector<SourceNode>& nodes) {
+                 GaussRules& rules, std::vector<SourceNode>& nodes) {
   // The coordinate along the axis is radius cos(angle). This substitution makes the integrand smooth at the border.
   const double most = std::acos(std::clamp(from / radius, -1.0, 1.0));
   const Vec2 across(-axis.y(), axis.x());
-  const GaussRule along = gauss_legendre(points_across(radius - from, detail_rad));
+  const GaussRule& along = rules(points_across(radius - from, detail_rad));
   const double widest = most > 0.5 * pi ? radius : radius * std::sin(most);
-  const GaussRule over = gauss_legendre(points_across(2.0 * widest, detail_rad));
+  const GaussRule& over = rules(points_across(2.0 * widest, detail_rad));
   for (std::size_t k = 0; k < along.nodes.size(); ++k) {
     const double angle = most * along.nodes[k];
     const double half = radius * std::sin(angle);
@@ -82,7 +97,8 @@ void add_segment(const Vec2& centre, const Vec2& axis, double radius, double fro
 /// by d, the order is located at `order_rad` - d, relative to the centre of the receiver. The points are the
 /// displacements for which the order is inside the receiver. The sum of the weights is ApertureKernel::per_sr().
 /// \param detail_rad width of the finest details of the cell's pattern
-std::vector<SourceNode> source_nodes(const ApertureKernel& kernel, const Vec2& order_rad, double detail_rad) {
+std::vector<SourceNode> source_nodes(const ApertureKernel& kernel, const Vec2& order_rad, double detail_rad,
+                                     GaussRules& rules) {
   const double source = kernel.source_radius_rad(), receiver = kernel.receiver_radius_rad();
   const double distance = order_rad.norm();
   std::vector<SourceNode> nodes;
@@ -92,14 +108,15 @@ std::vector<SourceNode> source_nodes(const ApertureKernel& kernel, const Vec2& o
   if (receiver <= point) return {{order_rad, 1.0 / (pi * source * source)}};
   const double factor = 1.0 / (pi * source * source * pi * receiver * receiver);
   if (distance <= std::abs(source - receiver)) {
-    add_disc(source < receiver ? Vec2(Vec2::Zero()) : order_rad, std::min(source, receiver), detail_rad, factor, nodes);
+    add_disc(source < receiver ? Vec2(Vec2::Zero()) : order_rad, std::min(source, receiver), detail_rad, factor, rules,
+             nodes);
     return nodes;
   }
   const Vec2 axis = order_rad / distance;
   // Position along the axis of the chord that both circles have in common.
   const double chord = (distance * distance + source * source - receiver * receiver) / (2.0 * distance);
-  add_segment(Vec2::Zero(), axis, source, chord, detail_rad, factor, nodes);
-  add_segment(order_rad, -axis, receiver, distance - chord, detail_rad, factor, nodes);
+  add_segment(Vec2::Zero(), axis, source, chord, detail_rad, factor, rules, nodes);
+  add_segment(order_rad, -axis, receiver, distance - chord, detail_rad, factor, rules, nodes);
   return nodes;
 }
 
@@ -240,10 +257,11 @@ double LatticeField::per_sr(const Vec2& cosines, const Eigen::Matrix2d& cosines_
   const double detail_rad = setting_.wavelength_mm / extent_mm_;
   // The reach in the plane of direction cosines is at most that in the plane of angles.
   const double reach_rad = kernel.reach_rad();
+  GaussRules rules;
   const auto count_of = [&](double wavelength_mm) {
     double nodes = 0.0;
     for_each_order(cosines, reach_rad, wavelength_mm, [&](const Vec2& order, const Vec2&) {
-      nodes += static_cast<double>(source_nodes(kernel, rad_per_cosine * (order - cosines), detail_rad).size());
+      nodes += static_cast<double>(source_nodes(kernel, rad_per_cosine * (order - cosines), detail_rad, rules).size());
     });
     return nodes;
   };
@@ -260,7 +278,7 @@ double LatticeField::per_sr(const Vec2& cosines, const Eigen::Matrix2d& cosines_
     std::vector<double> weights;
     for_each_order(cosines, reach_rad, wavelength_mm, [&](const Vec2& order, const Vec2& g_per_mm) {
       if (order.squaredNorm() >= 1.0) return;
-      for (const SourceNode& node : source_nodes(kernel, rad_per_cosine * (order - cosines), detail_rad)) {
+      for (const SourceNode& node : source_nodes(kernel, rad_per_cosine * (order - cosines), detail_rad, rules)) {
         nodes.push_back({g_per_mm, cosines_per_rad * node.shift_rad});
         weights.push_back(node.weight);
       }
