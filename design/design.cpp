@@ -153,6 +153,10 @@ const FacetPlanesFile* Design::facet_planes() const {
   return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
 }
 
+const CellSpread* Design::cell_spread() const {
+  return elements() != nullptr && elements()->cell_spread ? &*elements()->cell_spread : nullptr;
+}
+
 double Design::thickness_mm() const {
   return std::visit(Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
                                [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
@@ -203,6 +207,9 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
     throw InputError(
         design.where("wet_back.index"),
         what + " is not available for a part with a [wet_back], only for the same medium behind all elements");
+  if (design.cell_spread() != nullptr && !capabilities.cell_spreads)
+    throw InputError(design.where("array.depth_spread_nm"),
+                     what + " adds the intensities of cells: remove depth_spread_nm and spacing_spread_nm");
 }
 
 }  // namespace retrace::design

@@ -151,6 +151,13 @@ struct OutlineKeys {
 /// absolute path.
 OutlineKeys with_absolute_path(OutlineKeys outline);
 
+/// Random differences between the cells of an infinite array whose light interferes. The differences are Gaussian and
+/// independent from cell to cell.
+struct CellSpread {
+  double depth_nm = 0.0;    ///< standard deviation of the depth of a cell
+  double spacing_nm = 0.0;  ///< standard deviation of the position of a cell, along x and along y
+};
+
 /// Array of elements, the plate in front of them, and differences between individual elements.
 struct ElementArray {
   geometry::PartSpec part;
@@ -159,6 +166,8 @@ struct ElementArray {
   /// Keys that determine `part.array.outline`. If there are no such keys, documents of the design describe the outline
   /// by the sides and arcs of its borders.
   OutlineKeys outline = {};
+  /// Spread of the cells if the fields of different cells are added. Empty: their intensities are added.
+  std::optional<CellSpread> cell_spread = {};
 };
 
 /// Part whose shape is given by a mesh.
@@ -438,6 +447,9 @@ struct Design {
   /// Returns the mask of the array. Null if there is none.
   const ArrayMask* mask() const;
   const FacetPlanesFile* facet_planes() const;
+  /// Returns the spread of the cells if the light of different cells interferes, or null if their intensities are
+  /// added.
+  const CellSpread* cell_spread() const;
   /// \pre elements()
   const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
   geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
@@ -466,6 +478,7 @@ struct Capabilities {
   bool entrances = false;
   bool shells = false;
   bool wet_backs = false;
+  bool cell_spreads = true;  ///< false: the study adds the intensities of cells and cannot add their fields
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

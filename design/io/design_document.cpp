@@ -163,6 +163,10 @@ void set_array(Document& document, const ElementArray& elements) {
     keys.set("overlap_percent", part.array.overlap_percent);
     keys.set_choice("shifted_rows", part.array.shifted_rows);
   }
+  if (elements.cell_spread) {
+    keys.set("depth_spread_nm", elements.cell_spread->depth_nm);
+    keys.set("spacing_spread_nm", elements.cell_spread->spacing_nm);
+  }
   if (!elements.mask) return;
   keys.set_word("mask", elements.mask->name);
   keys.set("mask_threshold", elements.mask->threshold);

@@ -45,6 +45,8 @@ ElementArray read_elements(const Document& document) {
     array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
   if (constexpr std::string_view facets = "part.facets"; document.has(facets))
     array.facet_planes = {document.text(facets), document.file(facets)};
+  if (const auto depth_nm = document.number_if("array.depth_spread_nm"))
+    array.cell_spread = {*depth_nm, document.number("array.spacing_spread_nm")};
   return array;
 }
 

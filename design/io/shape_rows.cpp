@@ -8,6 +8,7 @@ using namespace schema;
 constexpr Kind kGap = Number{{.low = 0.0, .high = 1e6}};
 constexpr geometry::SizeKeys kSizeKeys(kSize, kGap);
 constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
+constexpr NumberRange kCellSpread{.low = 0.0, .high = 1e6};
 
 constexpr Words kBallArrangements = {"single", "packed"};
 constexpr auto kPacked = only(kBallArrangements, "packed");
@@ -117,6 +118,10 @@ constexpr std::string_view kNeedsFiniteArray =
 constexpr Condition kMaskOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle, kNeedsFiniteArray),
                                    is_not(kExtent, kInfinite, kNeedsFiniteArray)};
 constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, is_given("array.mask")};
+constexpr Condition kInfiniteOnly[] = {kArrayOfNoBall,
+                                       is(kExtent, kInfinite, "only allowed for array.extent = \"infinite\"")};
+constexpr Condition kSpreadOnly[] = {kInfiniteOnly[0], kInfiniteOnly[1],
+                                     is_given("array.depth_spread_nm", "only allowed together with depth_spread_nm")};
 constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
 
 constexpr Row kArrayRows[] = {
@@ -159,6 +164,14 @@ constexpr Row kArrayRows[] = {
      "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255. With "
      "0.7, values up to 178 are dark.",
      kThresholdOnly},
+    {"depth_spread_nm", Number{kCellSpread}, kNone,
+     "Standard deviation of the depths of cells. If it is given, the fields of different cells are added, and light "
+     "leaves in diffraction orders of the array and as diffuse light. Without it, the intensities of cells are added, "
+     "as for cells whose depths differ by more than a wavelength.",
+     kInfiniteOnly},
+    {"spacing_spread_nm", Number{kCellSpread}, 0.0,
+     "Standard deviation of the positions of cells, along x and along y. Errors of different cells are independent.",
+     kSpreadOnly},
     {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";

@@ -70,7 +70,9 @@ GaussRule gauss_legendre(std::size_t count) {
 
 ApertureKernel::ApertureKernel(const PhotometricApertures& apertures)
     : larger_rad_(0.5 * std::max(apertures.source.rad(), apertures.receiver.rad())),
-      smaller_rad_(0.5 * std::min(apertures.source.rad(), apertures.receiver.rad())) {
+      smaller_rad_(0.5 * std::min(apertures.source.rad(), apertures.receiver.rad())),
+      source_rad_(0.5 * apertures.source.rad()),
+      receiver_rad_(0.5 * apertures.receiver.rad()) {
   if (smaller_rad_ < kPoint * larger_rad_) smaller_rad_ = 0.0;
 }
 

@@ -67,9 +67,13 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                          std::shared_ptr<const Background> background)
     : design_(std::move(design)), request_(std::move(request)), background_(std::move(background)) {
   requests::check(request_);
-  design::require_supported(
-      design_,
-      {.what = "a camera image", .balls = true, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
+  design::require_supported(design_, {.what = "a camera image",
+                                      .balls = true,
+                                      .solids = true,
+                                      .entrances = true,
+                                      .shells = true,
+                                      .wet_backs = true,
+                                      .cell_spreads = false});
   if (!design_.shells.empty() && design_.is_infinite())
     throw InputError(design_.where("array.extent"), "must be \"finite\" for camera images of a part behind shells");
   lamp_ = lamp_of(request_);
