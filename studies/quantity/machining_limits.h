@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of the tool and the machine that an optimization respects by default.
+// Limits of the tool and the machine that an optimization and a composition respect by default.
 
 #include <vector>
 
@@ -13,6 +13,10 @@ namespace retrace::studies {
 /// `machine_travel_mm` and `edge_life_margin_mm`. Returns an empty list if the study ignores these limits, or if its
 /// first design is not an array of prisms.
 std::vector<Constraint> machining_limits(const Study& study);
+
+/// Adds the limits that the table [machining] implies to the constraints of a study. A constraint of the study on the
+/// same quantity replaces a limit.
+void add_machining_limits(const Study& study, std::vector<Constraint>& constraints);
 
 /// Returns a study that also computes the quantities of its machining limits. Quantities that the study already has are
 /// not added.
