@@ -173,7 +173,10 @@ def rows():
         Row("`image --detector`", "image examples/rtp_brick_0p5mm.toml --detector"),
         Row("`ranging`", "ranging examples/round_cube.toml",
             "ranging examples/round_cube.toml --cubes examples/ranging/sphere.toml --orbit-km 5860 --incidence 40 --pulse-ps 50 --shots 1000"),
-        Row("`rays`", "rays examples/rtp_brick_0p5mm.toml"),
+        Row("`rays`", "rays examples/reflex_reflector.toml --emitter lambertian --disc-mm 1 --half-angle-deg 20 "
+            "--distance-mm 30 -o returned.tm25ray"),
+        Row("`forces`", "forces one_job.toml --configuration orthogonal", files={"one.toml": layers},
+            prepare=programs_of("one", tool_width_mm=1.2, machine="thesis")[:1]),
         Row("`sweep` of the array size and of cells", "sweep examples/studies/table1.toml",
             *[f"sweep examples/studies/cells_{kind}.toml" for kind in ("hexagonal", "rtp", "triangular")]),
         Row("`sweep` of the incline", "sweep examples/studies/incline.toml"),

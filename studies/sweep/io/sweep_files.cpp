@@ -92,20 +92,24 @@ std::string sweep_csv(const SweepResult& result) {
   return csv.text();
 }
 
+std::string point_text(const Sweep& sweep, const compute::StoredPoint& point) {
+  const compute::StoreLayout layout = sweep.layout();
+  std::string text;
+  for (std::size_t k = 0; k < layout.inputs.size(); ++k)
+    text += fmt::format("{}{} = {}", k == 0 ? "" : ", ", printable(layout.inputs[k], 40),
+                        printable(value_text(point.inputs[k]), 40));
+  for (std::size_t k = 0; k < point.outputs.size(); ++k)
+    if (point.outputs[k].value)
+      text +=
+          fmt::format("{}{} = {:.4g}", k == 0 ? ": " : ", ", printable(layout.outputs[k], 40), *point.outputs[k].value);
+  return text;
+}
+
 std::string sweep_so_far(const Sweep& sweep, const std::vector<compute::StoredPoint>& points) {
   std::string text = fmt::format("so far, {} of {} points", points.size(), sweep.size());
   const auto is_done = [](const compute::StoredPoint& point) { return !point.failed; };
   const auto last = std::find_if(points.rbegin(), points.rend(), is_done);
-  if (last == points.rend()) return text;
-  const compute::StoreLayout layout = sweep.layout();
-  const Row row = table_row(*last);
-  for (std::size_t k = 0; k < row.size(); ++k) {
-    const bool is_input = k < layout.inputs.size();
-    const std::string& name = is_input ? layout.inputs[k] : layout.outputs[k - layout.inputs.size()];
-    text += fmt::format("{}{} = {}", k == 0 ? "; " : (k == layout.inputs.size() ? ": " : ", "), printable(name, 40),
-                        row[k]);
-  }
-  return text;
+  return last == points.rend() ? text : text + "; " + point_text(sweep, *last);
 }
 
 std::string sweep_table(const SweepResult& result) {
