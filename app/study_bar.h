@@ -40,11 +40,15 @@ class SearchBar : public studies::OptimiseObserver, public studies::SweepObserve
   void at_group(double fraction, std::size_t designs) override;
 
  private:
+  /// Writes a line about the best design if it has changed and the last line is old enough.
+  void write_best();
+
   ProgressBar bar_;
   std::string of_;
   std::function<std::string(const studies::Variant&)> text_of_best_;
   std::function<void(const studies::Variant&)> at_best_;
-  std::string best_;  ///< line about the best design so far; empty if there is none
+  std::string best_;     ///< text about the best design so far; empty if there is none
+  bool is_new_ = false;  ///< true if no line about the best design has been written yet
   std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
   std::uint64_t first_group_ = 0;  ///< number of designs in the first group; 0 until it is known
 };

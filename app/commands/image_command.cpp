@@ -14,6 +14,7 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/progress_bar.h"
 #include "app/ranks.h"
 #include "app/request_options.h"
 #include "app/shared_arguments.h"
@@ -34,7 +35,7 @@ namespace retrace::app {
 namespace {
 
 // Minimum time between two previews of an unfinished camera picture.
-constexpr std::chrono::seconds kPreview{10};
+constexpr std::chrono::seconds kPreview{5};
 // Number of passes that each MPI rank computes at a time. A pass traces four light paths per pixel and uses all threads
 // of the rank.
 constexpr std::size_t kPassesAtATime = 1;
@@ -116,21 +117,23 @@ ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, 
                      {.complete = result.complete});
 }
 
-/// Writes previews of the unfinished camera picture to the output folder. The time between two previews is at least
-/// kPreview.
+/// Reports the unfinished camera picture: prints a line about it, and writes a preview to the output folder. The time
+/// between two reports is at least kPreview.
 class Preview {
  public:
-  explicit Preview(const CommonOptions& common) : out_(common.out) {}
+  Preview(const CommonOptions& common, ProgressBar& bar) : out_(common.out), bar_(bar) {}
 
   void operator()(const studies::CameraResult& result) {
     const auto now = std::chrono::steady_clock::now();
-    if (out_.empty() || now - last_ < kPreview) return;
+    if (now - last_ < kPreview) return;
     last_ = now;
-    write_file_atomically(std::filesystem::path(out_) / kCameraPng, report::camera_png(result));
+    bar_.write_lines("so far: " + studies::camera_table(result));
+    if (!out_.empty()) write_file_atomically(std::filesystem::path(out_) / kCameraPng, report::camera_png(result));
   }
 
  private:
   std::string out_;
+  ProgressBar& bar_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
@@ -164,12 +167,15 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, co
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  Preview preview(common);
-  interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
-    result = study.run(
-        bar, cancel, [&](const studies::CameraResult& unfinished) { preview(unfinished); },
-        distribute_among(session, kPassesAtATime, cancel));
-  });
+  {
+    ProgressBar bar({"rendering", what_shortens(request)}, common);
+    Preview preview(common, bar);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      result = study.run(
+          &bar, cancel, [&](const studies::CameraResult& unfinished) { preview(unfinished); },
+          distribute_among(session, kPassesAtATime, cancel));
+    });
+  }
   for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
                      {.complete = result.complete});

@@ -103,7 +103,7 @@ Warnings warnings_of(const studies::Study& study, const studies::Optimum& optimu
     warnings.push_back(
         {"designs_out_of_budget",
          fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
-                     optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
+                     optimum.budget_failures, optimum.designs.size(), optimum.budget_failure_reason)});
   if (made) append(warnings, made->warnings);
   return warnings;
 }
@@ -159,7 +159,7 @@ ExitCode search_and_write(const OptimizeOptions& options, const CommonOptions& c
       files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                   without_middle(studies::optimum_text(study, request, optimum), common, "optimum.json"), warnings,
                   {.complete = optimum.complete,
-                   .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
+                   .interrupted = fmt::format("designs evaluated: {}", optimum.designs.size()),
                    .is_yes = optimum.best.has_value()});
   if (code != ExitCode::answer_is_no) return code;
   print_to_stderr("retrace: no feasible design: " + optimum.infeasible_reason);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include "report/results/result_plots.h"
 #include "studies/optimise/important_parameters.h"
 #include "studies/optimise/optimise.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::report {
 namespace {
@@ -18,10 +18,6 @@ using studies::Variant;
 // Values of Series::look for designs that satisfy all constraints, for designs that violate a constraint, and for the
 // best design.
 constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
-
-std::string title_of_study(const studies::Study& study) {
-  return study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title;
-}
 
 double number_of(const Variant& variant, std::size_t parameter) {
   return std::get<double>(variant.values[parameter].shown);
@@ -68,7 +64,7 @@ LinePlot plane_plot(const studies::Study& study, const studies::OptimiseRequest&
                     const studies::Optimum& optimum, std::size_t x, std::size_t y) {
   const auto [name, factor] = shown_objective(request);
   LinePlot plot;
-  plot.title = title_of_study(study) + ": evaluated designs";
+  plot.title = studies::shown_title(study) + ": evaluated designs";
   plot.x_label = study.parameters[x].name;
   plot.y_label = study.parameters[y].name;
   plot.scale_label = name;
@@ -95,7 +91,7 @@ LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseReques
   if (axes.size() > 1) return plane_plot(study, request, optimum, axes[0], axes[1]);
   const auto [name, factor] = shown_objective(request);
   LinePlot plot;
-  plot.title = title_of_study(study) + ": objective";
+  plot.title = studies::shown_title(study) + ": objective";
   plot.y_label = name;
   if (axes.empty()) return plot;
   const std::size_t x = axes.front();
@@ -126,7 +122,7 @@ LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseReques
 LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                           const studies::Optimum& optimum) {
   LinePlot plot;
-  plot.title = title_of_study(study) + ": constrained quantities";
+  plot.title = studies::shown_title(study) + ": constrained quantities";
   plot.y_label = "quantity / limit";
   const std::vector<std::size_t> axes = studies::important_parameters(study, optimum);
   if (axes.empty()) return plot;
@@ -135,9 +131,7 @@ LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRe
   const std::vector<const Variant*> designs = sorted_designs(optimum, x);
   plot.shaded_x = feasible_ranges(designs, x);
   for (const studies::Constraint& constraint : request.constraints) {
-    const auto found = std::ranges::find_if(
-        study.quantities, [&](const auto& quantity) { return quantity->name() == constraint.quantity; });
-    const auto k = static_cast<std::size_t>(found - study.quantities.begin());
+    const std::size_t k = studies::quantity_index(study, constraint.quantity).value();
     const double limit = constraint.max ? *constraint.max : *constraint.min;
     Series series{constraint.text(), {}, {}, {}};
     // A quantity cannot be divided by the limit 0. In this case, 1 + quantity is drawn, so that the limit is also at 1.

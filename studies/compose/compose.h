@@ -40,8 +40,8 @@ struct ComposeRequest {
   double min_area_fraction = 0.0;  ///< minimum fraction of the area for a zone
   double max_area_fraction = 1.0;
   std::optional<std::size_t> max_zones;  ///< maximum number of zones; no limit if empty
-  /// Number of equal steps into which the area of the part is divided. The area fractions of the best part are rounded
-  /// to multiples of one step. If empty, the fractions are not rounded.
+  /// Number of equal steps into which the whole area is divided. The area fractions of the best part are multiples of
+  /// one step. Empty: the largest step is used that lowers the merit by less than its standard error.
   std::optional<std::size_t> area_steps;
   std::size_t scan = 65;           ///< number of cells in the first scan, for each combination of discrete values
   std::size_t rounds = 4;          ///< maximum number of searches with dual prices
@@ -56,6 +56,7 @@ struct FamilyCell {
   PointValues values;
   MixedCell mixed;  ///< values of the goals, in the order of the request, and values whose means over the part are
                     ///< used: first those for `part_constraints`, then that for `front`
+  std::vector<double> goal_errors = {};  ///< standard errors of the goals
 };
 
 struct Zone {

@@ -14,6 +14,7 @@
 #include "raytrace/engines/engine.h"
 #include "studies/optimise/refine.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -43,11 +44,6 @@ std::vector<PointValues> combinations_of(const Study& study) {
     all = std::move(longer);
   }
   return all;
-}
-
-const Quantity* quantity_of(const Study& study, const std::string& name) {
-  const auto found = std::ranges::find_if(study.quantities, [&](const auto& each) { return each->name() == name; });
-  return found == study.quantities.end() ? nullptr : found->get();
 }
 
 }  // namespace
@@ -185,7 +181,7 @@ bool DesignFunction::is_allowed(const SearchPoint& point) const {
   try {
     const Candidate candidate = make_candidate(study_, design_at(point));
     for (const Constraint& constraint : request_.constraints) {
-      const Quantity* const quantity = quantity_of(study_, constraint.quantity);
+      const Quantity* const quantity = quantity_named(study_, constraint.quantity);
       if (quantity == nullptr || !quantity->tracing().empty()) continue;
       const std::optional<Measured> measured = quantity->measure(candidate, nullptr);
       is_allowed = is_allowed && measured && constraint.violation(measured->value) <= 0.0;

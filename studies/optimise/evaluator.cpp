@@ -11,14 +11,17 @@
 #include "core/task_progress.h"
 #include "core/threads.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
 namespace {
 
-std::string text_of(const std::variant<double, std::string>& value) {
+/// Adds a value to a key, which is a text that identifies a design or a stored point.
+void add_to_key(std::string& key, const std::variant<double, std::string>& value) {
   const double* const number = std::get_if<double>(&value);
-  return number != nullptr ? shortest(*number) : std::get<std::string>(value);
+  key += number != nullptr ? shortest(*number) : std::get<std::string>(value);
+  key += '\n';
 }
 
 /// Reports the progress of a group of designs to an observer. The observer may be null.
@@ -38,14 +41,16 @@ class GroupProgress : public Progress {
 
 std::string Evaluator::key_of(const PointValues& design) {
   std::string key;
-  for (const ParameterValue& value : design) key += text_of(value.shown) + '\n';
+  for (const ParameterValue& value : design) add_to_key(key, value.shown);
   return key;
 }
 
 std::string Evaluator::key_of(const PointValues& design, const ErrorLevel& level) const {
-  const std::string key = key_of(design);
+  std::string key = key_of(design);
   if (!request_.has_levels) return key;
-  return key + text_of(level.scale) + '\n' + text_of(static_cast<double>(level.replicate)) + '\n';
+  add_to_key(key, level.scale);
+  add_to_key(key, static_cast<double>(level.replicate));
+  return key;
 }
 
 Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
@@ -53,7 +58,7 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
     : study_(study), request_(request), store_(store), observer_(observer), cancel_(cancel) {
   for (compute::StoredPoint& point : store.points()) {
     std::string key;
-    for (const compute::StoredValue& value : point.inputs) key += text_of(value) + '\n';
+    for (const compute::StoredValue& value : point.inputs) add_to_key(key, value);
     used_numbers_.insert(point.point);
     stored_.emplace(std::move(key), std::move(point));
   }
@@ -219,15 +224,13 @@ Variant Evaluator::variant_of(const compute::StoredPoint& point, const PointValu
 }
 
 std::optional<double> Evaluator::value(const Variant& variant, const std::string& quantity) const {
-  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
-    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].value;
-  return std::nullopt;
+  const std::optional<std::size_t> k = quantity_index(study_, quantity);
+  return k && *k < variant.outputs.size() ? variant.outputs[*k].value : std::nullopt;
 }
 
 double Evaluator::error_of(const Variant& variant, const std::string& quantity) const {
-  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
-    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].std_error;
-  return 0.0;
+  const std::optional<std::size_t> k = quantity_index(study_, quantity);
+  return k && *k < variant.outputs.size() ? variant.outputs[*k].std_error : 0.0;
 }
 
 void Evaluator::check_constraints(Variant& variant) const {
@@ -290,9 +293,7 @@ std::optional<double> Evaluator::slope(const PointValues& design, std::size_t pa
     if (!by) return std::nullopt;
     double sum = 0.0;
     for (const auto& [name, weight] : request_.objective.weights) {
-      const auto quantity = std::find_if(study_.quantities.begin(), study_.quantities.end(),
-                                         [&name = name](const auto& q) { return q->name() == name; });
-      const std::optional<double> term = (*quantity)->slope(candidate, by->first, cancel_);
+      const std::optional<double> term = quantity_named(study_, name)->slope(candidate, by->first, cancel_);
       if (!term) return std::nullopt;
       sum += weight * *term * by->second;
     }

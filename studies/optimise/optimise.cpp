@@ -467,7 +467,6 @@ Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& 
     finish_early(request, evaluator, optimum);
   }
   optimum.designs = evaluator.evaluated();
-  optimum.evaluations = evaluator.evaluated().size();
   optimum.budget_failures = evaluator.budget_failures();
   optimum.budget_failure_reason = evaluator.budget_failure_reason();
   return optimum;

@@ -102,7 +102,6 @@ struct Optimum {
   std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes", "no slopes" or "paired comparison"
-  std::size_t evaluations = 0;
   std::size_t budget_failures =
       0;  ///< number of designs that failed because the budget of memory or beams was exhausted
   std::string budget_failure_reason;  ///< error message of the first design that `budget_failures` counts

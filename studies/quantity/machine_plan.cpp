@@ -8,32 +8,26 @@
 #include "core/length_units.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
+#include "fabrication/job/tool_limits.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "studies/fabrication/job_maker.h"
 
 namespace retrace::studies {
 namespace {
 
-/// Maximum chisel width that jobs allow.
-constexpr double kMaxToolWidthMm = 2.0;
-/// Maximum tool life that jobs allow.
-constexpr double kMaxEdgeLifeMm = 1e9;
-/// The tool may be wider than the element by at most this amount, which allows for rounding errors.
-constexpr double kExcessMm = 1e-6;
-
-/// Returns a job that cuts the prisms of a design with the process of [machining].
+/// Returns a job that cuts the prisms of a design according to [machining].
 fabrication::Job job_of_process(const design::Design& design, const geometry::RtpElement& prism,
                                 const MachiningProcess& process) {
   JobRequest request;
   request.machine = process.machine;
   request.strategy = fabrication::kStrategyWords[static_cast<std::size_t>(process.strategy)];
-  request.tool_width_mm = process.tool_width_mm.value_or(std::min(prism.width_mm, kMaxToolWidthMm));
+  request.tool_width_mm = process.tool_width_mm.value_or(std::min(prism.width_mm, fabrication::kMaxToolWidthMm));
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
-  // Planning fails if the cut is longer than the tool life. The job therefore has the maximum tool life, and the study
-  // compares the length of cut with the actual tool life.
-  if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
+  // A plan that exceeds the tool life would be refused. The job therefore has a very large tool life, and its plan
+  // contains the length of cut. The study compares this length with the actual tool life.
+  if (process.edge_life_mm) job.tool.edge_life_mm = fabrication::kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
 }
@@ -80,7 +74,7 @@ void take_machining(const MachiningProcess& process, fabrication::Job& job) {
 MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess& process) {
   MachinePlan plan;
   const auto& prism = std::get<geometry::RtpElement>(design.part().element);
-  if (process.tool_width_mm && *process.tool_width_mm > prism.width_mm + kExcessMm) return plan;
+  if (process.tool_width_mm && *process.tool_width_mm > prism.width_mm + fabrication::kFitToleranceMm) return plan;
   const fabrication::Job job = job_of_process(design, prism, process);
   const fabrication::Machine machine = fabrication::load_machine(job.machine, {});
   const std::vector<fabrication::CutElement> elements = fabrication::cut_elements(job);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -53,10 +54,18 @@ std::vector<Constraint> machining_limits(const Study& study) {
   return limits;
 }
 
+void add_machining_limits(const Study& study, std::vector<Constraint>& constraints) {
+  const std::vector<Constraint> given = constraints;
+  for (const Constraint& limit : machining_limits(study)) {
+    const auto is_same = [&](const Constraint& constraint) { return constraint.quantity == limit.quantity; };
+    if (quantity_named(study, limit.quantity) != nullptr && std::ranges::none_of(given, is_same))
+      constraints.push_back(limit);
+  }
+}
+
 Study with_machining_limits(Study study) {
   for (const Constraint& limit : machining_limits(study)) {
-    if (std::ranges::any_of(study.quantities, [&](const auto& each) { return each->name() == limit.quantity; }))
-      continue;
+    if (quantity_named(study, limit.quantity) != nullptr) continue;
     for (const MachiningLimit& each : kLimits)
       if (limit.quantity == each.quantity) study.quantities.push_back(make_plain(each.quantity, each.kind));
   }

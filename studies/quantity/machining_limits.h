@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of the tool and the machine that optimizations take into account by default.
+// Limits of the tool and the machine that an optimization and a composition respect by default.
 
 #include <vector>
 
@@ -14,7 +14,12 @@ namespace retrace::studies {
 /// design is not an array of prisms.
 std::vector<Constraint> machining_limits(const Study& study);
 
-/// Adds the quantities of all machining limits to a study, unless the study already contains them.
+/// Adds the limits that the table [machining] implies to the constraints of a study. A constraint of the study on the
+/// same quantity replaces a limit.
+void add_machining_limits(const Study& study, std::vector<Constraint>& constraints);
+
+/// Returns a study that also computes the quantities of its machining limits. Quantities that the study already has are
+/// not added.
 Study with_machining_limits(Study study);
 
 }  // namespace retrace::studies

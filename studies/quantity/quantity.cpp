@@ -12,6 +12,7 @@
 #include "design/design_part.h"
 #include "design/entrance_of_design.h"
 #include "design/optical_model.h"
+#include "fabrication/job/tool_limits.h"
 #include "geometry/elements/element_cells.h"
 #include "studies/inspect/inspect.h"
 #include "studies/quantity/machine_plan.h"
@@ -202,10 +203,9 @@ std::optional<double> area_rate_mm2_per_h(const Candidate& candidate) {
 /// Returns the width of an element minus the width of the tool. Returns 0 if the process gives no tool width, or if the
 /// difference is less than one nanometre.
 double tool_fit_mm(const Candidate& candidate) {
-  constexpr double fit_mm = 1e-6;
   const double width_mm = prism_of(candidate).width_mm;
   const double margin_mm = width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
-  return std::abs(margin_mm) < fit_mm ? 0.0 : margin_mm;
+  return std::abs(margin_mm) < fabrication::kFitToleranceMm ? 0.0 : margin_mm;
 }
 
 /// Returns the smallest distance of an axis from its limit. Returns no value if the process names no machine, or if the

@@ -11,6 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/quantity/io/study_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -109,8 +110,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
 
 std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result) {
   const Study& study = swept.sweep.study();
-  Json json = {{"study", study.source}};
-  if (!study.title.empty()) json["title"] = study.title;
+  Json json = begin_document(study);
   json["parameters"] = Json::array();
   for (const Parameter& parameter : study.parameters) json["parameters"].push_back(parameter.name);
   json["sampling"] = sampling_name(request.sampling);
