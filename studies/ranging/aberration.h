@@ -44,15 +44,10 @@ struct AnnulusStatistics {
 /// Function that returns one value for each direction. Directions are given by angles to the right and up from the
 /// direction to the source, in rad.
 using DirectionValues = std::function<std::vector<double>(const std::vector<geometry::Vec2>& angles_rad)>;
-<<<<<<< HEAD
 /// Returns the number of directions that statistics_over() evaluates before its local search.
 double evaluations_over(const Annulus& annulus, double detail_rad);
-/// Computes the mean and the extremes of a function over an annulus. The extremes are first found among samples and
-/// then refined by a local search.
-=======
 /// Computes the mean, the minimum and the maximum of a function over an annulus. Minimum and maximum are first found
 /// among samples and then refined by a local search.
->>>>>>> 802f7847a0c5c6a4edab9edc43d65142005b01e9
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values);
 
 }  // namespace retrace::studies

@@ -37,7 +37,6 @@ constexpr std::size_t kRings = 60;
 constexpr std::size_t kPointsPerRing = 72;
 // A warning is issued if more than this fraction of the incident power is in beams whose diffraction is not computed.
 constexpr double kMaxUndiffractedPower = 1e-3;
-<<<<<<< HEAD
 // Maximum number of directions in which the far field of one point is evaluated. This takes some minutes.
 constexpr double kMaxDirections = 1e8;
 // Maximum number of directions of an annulus, whose values are all stored.
@@ -45,10 +44,7 @@ constexpr double kMaxAnnulusDirections = 1e7;
 // Number of directions, including those of the discs of source and receiver, that are evaluated between two reports of
 // progress.
 constexpr std::size_t kDirectionsPerReport = 65536;
-// Degree of polarisation below which light counts as unpolarised.
-=======
 // Light with a smaller degree of polarisation counts as unpolarised.
->>>>>>> 802f7847a0c5c6a4edab9edc43d65142005b01e9
 constexpr double kMinPolarisation = 1e-9;
 
 Stokes sent_stokes(const RangingRequest& request, const design::Design& design) {
@@ -84,7 +80,6 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
-<<<<<<< HEAD
 bool has_polarisation(const Stokes& sent) {
   return by_polarisation({}, sent).parallel.has_value();
 }
@@ -123,11 +118,8 @@ class PointProgress {
   double done_ = 0.0;
 };
 
-/// Returned light of the illuminated cubes in any direction, averaged over the discs of source and receiver.
-=======
 /// Cross section of all illuminated cubes as a function of the direction of the returned light. It is averaged over the
 /// angular extent of the source and the receiver.
->>>>>>> 802f7847a0c5c6a4edab9edc43d65142005b01e9
 class ObservedLight {
  public:
   ObservedLight(const LitCubes& lit, const RangingSettings& settings, PointProgress& progress,
