@@ -70,7 +70,7 @@ TEST(ExactStep, SphericalFacesAreSpheres) {
   for (const double radius_mm : {8.0, -12.0}) {
     Sag sag;
     sag.asphere.curvature_per_mm = -1.0 / radius_mm;
-    const ExactSphere sphere{Vec3(1.5, 1.5, kHeightMm - radius_mm), radius_mm > 0.0 ? Vec3::UnitZ() : -Vec3::UnitZ(),
+    const ExactSphere sphere{Vec3(1.5, 1.5, kHeightMm - radius_mm), Vec3(0.0, 0.0, radius_mm > 0.0 ? 1.0 : -1.0),
                              std::abs(radius_mm), radius_mm > 0.0};
     const ExactBoundary boundary = exact_boundary(prisms(), *surface_over_centre(sag), sphere, 1e-6);
     const double volume_mm3 = volume_of_prisms_mm3() + integral_over_square([&](double x, double y) {
