@@ -13,6 +13,6 @@ retrace_test(raytrace_tests
           ${CMAKE_CURRENT_LIST_DIR}/rough_lens_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_io)
 # Tests of interference between cells. They are a separate program, because they use only the tracer of beams.
-retrace_test(lattice_tests
+retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/lattice_field_test.cpp
   LIBRARIES retrace::beams retrace::geometry)
