@@ -333,7 +333,7 @@ class FaceHeights {
 };
 
 /// Rectangle in plan.
-struct Cell {
+struct GridCell {
   Vec2 centre;
   Vec2 half;
 };
@@ -401,7 +401,7 @@ class TreeMaker {
   }
 
   /// Returns the sides of the border that are near a cell.
-  std::vector<Side> sides_near(const std::vector<Side>& sides, const Cell& cell) const {
+  std::vector<Side> sides_near(const std::vector<Side>& sides, const GridCell& cell) const {
     const double reach = cell.half.norm() + 1.5 * margin_mm_;
     std::vector<Side> near;
     for (const Side& side : sides) {
@@ -413,7 +413,7 @@ class TreeMaker {
     return near;
   }
 
-  void divide(std::uint32_t node, const Cell& cell, const std::vector<Side>& sides_around) {
+  void divide(std::uint32_t node, const GridCell& cell, const std::vector<Side>& sides_around) {
     constexpr double kMinSize = 1.0 / 16384.0;
     constexpr double kMinSizeBeyond = 1.0 / 1024.0;
     const std::vector<Side> sides = sides_near(sides_around, cell);
@@ -438,7 +438,7 @@ class TreeMaker {
     tree_.nodes.resize(tree_.nodes.size() + 2);
     tree_.nodes[node] = {axis, first, first + 1, cell.centre[axis] - origin_[axis]};
     for (const std::uint32_t side : {0U, 1U}) {
-      Cell part = cell;
+      GridCell part = cell;
       part.half[axis] *= 0.5;
       part.centre[axis] += (side == 0U ? -1.0 : 1.0) * part.half[axis];
       divide(first + side, part, sides);
@@ -447,7 +447,7 @@ class TreeMaker {
 
   /// Fits a polynomial to the face on a cell, and adds it to the tree if it is accurate.
   /// \param axis set to the axis along which the cell should be divided otherwise
-  bool fit(const Cell& cell, int& axis) {
+  bool fit(const GridCell& cell, int& axis) {
     Eigen::Matrix<double, kNodes, kNodes> heights;
     for (int i = 0; i < kNodes; ++i)
       for (int j = 0; j < kNodes; ++j) {
@@ -474,7 +474,7 @@ class TreeMaker {
     return true;
   }
 
-  bool is_accurate(const Cell& cell, const HeightPatch& patch, const Allowed& allowed) const {
+  bool is_accurate(const GridCell& cell, const HeightPatch& patch, const Allowed& allowed) const {
     // These points are not nodes, and include the border of the cell.
     constexpr std::array<double, 7> kAt = {-1.0, -0.9, -0.37, 0.07, 0.47, 0.91, 1.0};
     for (const double u : kAt)
