@@ -91,6 +91,24 @@ TEST(RuledDesign, EquilateralHasThePhotometryOfTriangularCubeCorners) {
   }
 }
 
+// Half of the cells of a canted pair face a source at 30 degrees of incidence, whichever the side. Cells without cant
+// return much less light from there if the source is in the plane across the grooves of the set a.
+TEST(RuledDesign, CantedPairsReturnLightFromLargeEntranceAnglesInBothPresentations) {
+  studies::PhotometrySettings request = request_of(points_at({0.2}, 1.0));
+  request.test_plan.points.front().v_deg = 30.0;
+  request.diffraction = true;
+  const auto r_a = [&](const design::Design& design, double rotation_deg) {
+    request.rotation_deg = {rotation_deg};
+    return run(design, request).points[0].r_a;
+  };
+  const design::Design pair = read(text_of(kCanted));
+  const double upright = r_a(equilateral(), 0.0);
+  EXPECT_GT(r_a(pair, 0.0), 2.0 * upright);
+  EXPECT_GT(r_a(pair, 90.0), 2.0 * upright);
+  // A rotation by 180 degrees exchanges the cells of a pair.
+  EXPECT_NEAR(r_a(pair, 180.0), r_a(pair, 0.0), 1e-9 * r_a(pair, 0.0));
+}
+
 /// Returns the fraction of a triangle that is also in its mirror image about a point. In barycentric coordinates, the
 /// common region is 0 <= x_k <= 2 c_k, where c are the coordinates of the point. Its area follows from inclusion and
 /// exclusion of the three corners that the bounds cut off.
