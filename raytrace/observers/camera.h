@@ -154,10 +154,11 @@ class CameraTracer {
   /// Traces one pass over the picture with all available threads. Returns nothing if it was cancelled. The result
   /// depends only on the seed, the scene and the number of the pass.
   ///
-  /// The cell engine uses a PixelGuide, which selects half of the points of a pixel if this reduces the noise. The
-  /// first call trains the guide with pass 0 and an additional training pass. Embree traces more paths through noisy
-  /// pixels (PixelPoints). Two additional training passes determine the number of paths through each pixel. Additional
-  /// training passes are not included in the picture.
+  /// With the cell engine, a PixelGuide selects half of the points of a pixel if this reduces the noise. The first call
+  /// trains the guide with pass 0 and with a training pass that is not part of the picture. With Embree, noisy pixels
+  /// have more points (PixelPoints). Two training passes, which are not part of the picture, determine the numbers of
+  /// points of pass 0. The training passes and pass 0 together determine the numbers of all other passes. The first
+  /// call therefore traces pass 0 as well.
   /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
