@@ -18,7 +18,7 @@ namespace retrace::testing::broken_step_test {
 namespace {
 
 /// Python code that writes one damaged file for each entry of `broken`. `spline`, `sphere` and `box` are whole files.
-constexpr const char* kBroken = R"(
+constexpr const char* kBroken = R"py(
 import re
 def text(shape, solid=False):
     s = w.StepFile()
@@ -74,13 +74,13 @@ for name, content in broken.items():
     open(name + '.step', 'w', encoding='latin1').write(content)
 open('names', 'w').write('\n'.join(broken))
 open('spline.step', 'w').write(spline)
-)";
+)py";
 
 rusage usage_of_children() {
-    rusage usage{};
-    ::getrusage(RUSAGE_CHILDREN, &usage);
-    return usage;
-  }
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  return usage;
+}
 
 /// Returns the processor time of all children that have ended.
 double seconds_of_children() {

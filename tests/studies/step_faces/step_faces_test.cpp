@@ -110,7 +110,7 @@ TEST_F(StepFaces, GiveThePhotometryOfTheSameFormulas) {
 TEST_F(StepFaces, AreWithinANanometreOfTheirClosedForms) {
   const double radius = 150.0;
   write_step(folder_, "lens.step", "w.sphere(s)");
-  const geometry::StepSurface sphere = surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}});
+  const geometry::StepSurface sphere = surface_of({.file = {}, .origin_mm = std::array{0.0, 0.0, 0.0}});
   EXPECT_LE(sphere.deviation_mm, geometry::kMaxStepDeviationMm);
   EXPECT_LE(sphere.deviation_arcsec, geometry::kMaxStepDeviationArcsec);
   for (double x = -19.9; x < 20.0; x += 0.71)
@@ -125,7 +125,7 @@ TEST_F(StepFaces, AreWithinANanometreOfTheirClosedForms) {
 
 // The vertex of a surface of revolution is a pole of its parameters. The border of the face is a rectangle around it.
 TEST_F(StepFaces, VertexOfASurfaceOfRevolutionIsSmooth) {
-  write_step(folder_, "lens.step", R"(
+  write_step(folder_, "lens.step", R"py(
 triples = [(0, 0, 0), (0, 0, 30), (0, 30, 30), (30, 30, 30)]
 points = [s.point((sum(t) / 3, 0, -(t[0] * t[1] + t[1] * t[2] + t[2] * t[0]) / 1200)) for t in triples]
 numbers = ','.join(f'#{number}' for number in points)
@@ -133,8 +133,8 @@ curve = s.write(f"B_SPLINE_CURVE_WITH_KNOTS('',3,({numbers}),.UNSPECIFIED.,.F.,.
 axis = s.write(f"AXIS1_PLACEMENT('',#{s.point((0, 0, 0))},#{s.direction((0, 0, 1))})")
 surface = s.write(f"SURFACE_OF_REVOLUTION('',#{curve},#{axis})")
 paraboloid = w.Height(lambda x, y: -(x * x + y * y) / 400, lambda x, y: (-x / 200, -y / 200))
-w.face_over(s, surface, paraboloid, w.rectangle(w.LOW, w.HIGH)))");
-  const geometry::StepSurface surface = surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}});
+w.face_over(s, surface, paraboloid, w.rectangle(w.LOW, w.HIGH)))py");
+  const geometry::StepSurface surface = surface_of({.file = {}, .origin_mm = std::array{0.0, 0.0, 0.0}});
   for (const Vec2& p : {Vec2(0, 0), Vec2(1e-7, 0), Vec2(-3, 2), Vec2(19, -14)}) {
     const jets::Gradient z = surface.patches.evaluate(jets::Gradient(p.x(), 1.0, 0.0), jets::Gradient(p.y(), 0.0, 1.0));
     EXPECT_NEAR(z.value, -p.squaredNorm() / 400, 1e-9);
@@ -170,15 +170,15 @@ TEST_F(StepFaces, UnitsAreReadFromTheFile) {
 TEST_F(StepFaces, RotationsAndOriginPlaceTheFile) {
   write_step(folder_, "lens.step", "w.cylinder(s)");
   const auto height = [](double t) { return std::sqrt(120.0 * 120.0 - t * t) - 120.0; };
-  const geometry::StepSurface turned = surface_of({.rotation_deg = {0, 0, 90}});
+  const geometry::StepSurface turned = surface_of({.file = {}, .rotation_deg = {0, 0, 90}});
   EXPECT_NEAR(turned.size_mm.x(), 30.0, 1e-9);
   EXPECT_NEAR(turned.patches.evaluate(3.0, 11.0), height(11.0), 1e-9);
-  const geometry::StepSurface moved = surface_of({.origin_mm = std::array{5.0, 1.0, -2.0}});
+  const geometry::StepSurface moved = surface_of({.file = {}, .origin_mm = std::array{5.0, 1.0, -2.0}});
   EXPECT_NEAR(moved.patches.evaluate(3.0, 11.0), height(8.0) + 2.0, 1e-9);
-  EXPECT_EQ(refusal_of([&] { surface_of({.rotation_deg = {90, 0, 0}}); }), "TMP/lens.step");
+  EXPECT_EQ(refusal_of([&] { surface_of({.file = {}, .rotation_deg = {90, 0, 0}}); }), "TMP/lens.step");
   const double tilt = 0.3;
   const geometry::StepSurface tilted =
-      surface_of({.origin_mm = std::array{0.0, 0.0, 0.0}, .rotation_deg = {0, tilt, 0}});
+      surface_of({.file = {}, .origin_mm = std::array{0.0, 0.0, 0.0}, .rotation_deg = {0, tilt, 0}});
   // A point (x, z) of the circle has the rotated position (x cos + z sin, -x sin + z cos).
   const double angle = tilt * std::numbers::pi / 180.0;
   const double x = 6.0;
@@ -189,28 +189,30 @@ TEST_F(StepFaces, RotationsAndOriginPlaceTheFile) {
 TEST_F(StepFaces, AreFoundByNameColourAndNumber) {
   write_step(folder_, "lens.step", "w.roof(s)");
   const auto slope = [&](const std::string& face) {
-    return surface_of({.face = face}).patches.evaluate(jets::Gradient(0.0, 1.0, 0.0), jets::Gradient(0.0, 0.0, 1.0)).x;
+    return surface_of({.file = {}, .face = face})
+        .patches.evaluate(jets::Gradient(0.0, 1.0, 0.0), jets::Gradient(0.0, 0.0, 1.0))
+        .x;
   };
   for (const std::string face : {"left", "#ff0000", "#FF0000", "1"}) EXPECT_NEAR(slope(face), 0.1, 1e-12) << face;
   for (const std::string face : {"right", "#0000ff", "2"}) EXPECT_NEAR(slope(face), -0.1, 1e-12) << face;
   for (const std::string face : {"middle", "#00ff00", "3", "0", "#zz"})
-    EXPECT_EQ(refusal_of([&] { surface_of({.face = face}); }), "TMP/lens.step") << face;
+    EXPECT_EQ(refusal_of([&] { surface_of({.file = {}, .face = face}); }), "TMP/lens.step") << face;
 }
 
 TEST_F(StepFaces, OfSolidsThatFaceDownwardsAreNotTheLargest) {
   write_step(folder_, "lens.step", "w.box(s)", "mm", true);
   for (const std::string face : {"largest", "towards +z", "+z", "#ff0000"}) {
-    const geometry::StepSurface surface = surface_of({.face = face});
+    const geometry::StepSurface surface = surface_of({.file = {}, .face = face});
     EXPECT_NEAR(surface.origin_mm.z(), 5.0, 1e-12) << face;
     EXPECT_NEAR(surface.size_mm.x(), 40.0, 1e-12);
   }
-  EXPECT_NEAR(surface_of({.face = "-z"}).origin_mm.z(), 0.0, 1e-12);
-  EXPECT_EQ(refusal_of([&] { surface_of({.face = "+x"}); }), "TMP/lens.step");
+  EXPECT_NEAR(surface_of({.file = {}, .face = "-z"}).origin_mm.z(), 0.0, 1e-12);
+  EXPECT_EQ(refusal_of([&] { surface_of({.file = {}, .face = "+x"}); }), "TMP/lens.step");
 }
 
 TEST_F(StepFaces, EdgesBetweenFacesStayEdges) {
   write_step(folder_, "lens.step", "w.roof(s)");
-  const geometry::StepSurface roof = surface_of({.face = "towards +z"});
+  const geometry::StepSurface roof = surface_of({.file = {}, .face = "towards +z"});
   ASSERT_EQ(roof.breaks.size(), 1U);
   EXPECT_NEAR(roof.breaks[0].angle_deg, 2.0 * std::atan(0.1) * 180.0 / std::numbers::pi, 1e-6);
   EXPECT_NEAR(roof.breaks[0].at_mm.x(), 0.0, 1e-9);
@@ -224,10 +226,10 @@ TEST_F(StepFaces, EdgesBetweenFacesStayEdges) {
 
 TEST_F(StepFaces, GapsAreSewnUpToTheTolerance) {
   write_step(folder_, "lens.step", "w.roof(s, gap_mm=0.02)");
-  const geometry::StepSurface roof = surface_of({.face = "towards +z", .sew_mm = 0.05});
+  const geometry::StepSurface roof = surface_of({.file = {}, .face = "towards +z", .sew_mm = 0.05});
   EXPECT_GE(roof.gap_mm, 0.009);
   EXPECT_LE(roof.gap_mm, 0.05);
-  EXPECT_EQ(refusal_of([&] { surface_of({.face = "towards +z", .sew_mm = 0.001}); }), "TMP/lens.step");
+  EXPECT_EQ(refusal_of([&] { surface_of({.file = {}, .face = "towards +z", .sew_mm = 0.001}); }), "TMP/lens.step");
 }
 
 TEST_F(StepFaces, OutlineIsTheBorderOfTheFace) {
