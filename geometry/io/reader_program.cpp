@@ -123,7 +123,7 @@ std::string output_of_reader(std::string_view name, std::vector<std::string> arg
   const PipeEnd from_program(ends[0]);
   PipeEnd to_parent(ends[1]);
   // Other processes may slow the program down. The time limit of the clock is therefore longer than that of the program.
-  const ReaderClock::time_point end = ReaderClock::now() + std::chrono::seconds(3 * kMaxReaderSeconds);
+  const ReaderClock::time_point end = ReaderClock::now() + std::chrono::seconds(6 * kMaxReaderSeconds);
   RunningProgram running(program, std::move(arguments), to_parent);
   to_parent.close();
   std::string text = text_of_pipe(from_program, end);

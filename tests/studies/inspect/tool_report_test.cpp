@@ -133,7 +133,9 @@ TEST(PinAxes, BelowASphereHaveTheAngleOfItsNormal) {
     const Vec2 from_centre = pin.centre_mm - Vec2(3.0, 2.5);
     EXPECT_NEAR(pin.angle_deg(), std::asin(from_centre.norm() / radius_mm) / kDegree, 1e-9);
     const double azimuth = std::atan2(-from_centre.y(), -from_centre.x());
-    if (from_centre.norm() > 1e-6) EXPECT_NEAR(std::cos(pin.azimuth_deg() * kDegree - azimuth), 1.0, 1e-9);
+    if (from_centre.norm() > 1e-6) {
+      EXPECT_NEAR(std::cos(pin.azimuth_deg() * kDegree - azimuth), 1.0, 1e-9);
+    }
   }
   EXPECT_TRUE(report_tool(part, std::nullopt, {}).pin_axes.empty());
 }

@@ -133,7 +133,7 @@ TEST(SolidPart, UnitsAndRotationsAreThoseOfTheFileAndTheDesign) {
   EXPECT_NEAR(upright.at("upper_mm").at(2).get<double>(), 2.0, 1e-12);
   const Json turned = measures({"--set", "part.rotate_deg=[90, 0, 90]"});
   // A rotation about x exchanges y and z; the rotation about z then exchanges x and y.
-  for (const auto& [axis, length] : {std::pair(0, 2.0), std::pair(1, 4.0), std::pair(2, 3.0)})
+  for (const auto& [axis, length] : {std::pair(0U, 2.0), std::pair(1U, 4.0), std::pair(2U, 3.0)})
     EXPECT_NEAR(turned.at("upper_mm").at(axis).get<double>() - turned.at("lower_mm").at(axis).get<double>(), length, 1e-12);
   const Json down = measures({"--set", "part.face=\"down\""});
   EXPECT_NEAR(down.at("upper_mm").at(2).get<double>(), 0.0, 1e-12);
