@@ -122,7 +122,7 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, Warn
                                           is_small ? "metre" : "micrometre", shortest(probable_scale))));
 }
 
-/// Returns the rotation that the keys `rotate_deg` and `face` describe.
+/// Returns the rotation that the keys `rotate_deg` and `facing` describe.
 Eigen::Matrix3d part_from_file(const MeshKeys& keys) {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   const auto rotate = [&](const geometry::Vec3& axis, double angle_deg) {

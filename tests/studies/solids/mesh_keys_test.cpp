@@ -62,7 +62,7 @@ TEST(MeshKeys, ObjFilesAndRotationsGiveTheDesign) {
   folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [90, 0, 0]\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
   // The entrance face points to -z after a rotation in the opposite direction.
-  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\nface = \"down\"\n"));
+  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\nfacing = \"down\"\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
 }
 
@@ -100,7 +100,7 @@ TEST(MeshKeys, WrongKeysAreRefused) {
   refused("weld_mm = -1\n", "d.toml:3: part.weld_mm");
   refused("weld_mm = 2\n", "d.toml:3: part.weld_mm");
   refused("chord_mm = 0.1\n", "d.toml:3: part.chord_mm");
-  refused("face = \"top\"\n", "d.toml:3: part.face");
+  refused("facing = \"top\"\n", "d.toml:3: part.facing");
   refused("rotate_deg = [0, 0, 400]\n", "d.toml:3: part.rotate_deg");
 }
 

@@ -135,7 +135,7 @@ TEST(SolidPart, UnitsAndRotationsAreThoseOfTheFileAndTheDesign) {
   // A rotation about x exchanges y and z; the rotation about z then exchanges x and y.
   for (const auto& [axis, length] : {std::pair(0U, 2.0), std::pair(1U, 4.0), std::pair(2U, 3.0)})
     EXPECT_NEAR(turned.at("upper_mm").at(axis).get<double>() - turned.at("lower_mm").at(axis).get<double>(), length, 1e-12);
-  const Json down = measures({"--set", "part.face=\"down\""});
+  const Json down = measures({"--set", "part.facing=\"down\""});
   EXPECT_NEAR(down.at("upper_mm").at(2).get<double>(), 0.0, 1e-12);
   EXPECT_NEAR(down.at("lower_mm").at(1).get<double>(), -3.0, 1e-12);
 }
@@ -200,7 +200,7 @@ TEST(SolidPart, WrongFilesAndKeysAreRefused) {
   refused(solid + "chord_mm = 0\n", "d.toml:3: part.chord_mm");
   refused(solid + "rotate_deg = [1, 2]\n", "d.toml:3: part.rotate_deg");
   refused(solid + "rotate_deg = 90\n", "d.toml:3: part.rotate_deg");
-  refused(solid + "face = \"left\"\n", "d.toml:3: part.face");
+  refused(solid + "facing = \"left\"\n", "d.toml:3: part.facing");
   refused(solid + "[array]\nx_length_mm = 1\n", "d.toml:3: array");
   refused(solid + "[surface]\nroot_radius_um = 1\n", "d.toml:4: surface.root_radius_um");
   refused("rotate_deg = [0, 0, 90]\nplate_mm = [1, 1]\n", "d.toml:2: part.rotate_deg");
