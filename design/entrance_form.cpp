@@ -49,7 +49,9 @@ std::optional<geometry::FaceSurface> closed_form_of(const EntranceForm& form, co
   const Eigen::Matrix3d axes = part_from_surface_of(form);
   const Vec3 normal = axes.col(2);
   return std::visit(
-      Overloaded{[&](const geometry::PlaneEntrance&) { return Found(geometry::ExactPlane{origin_mm, normal}); },
+      Overloaded{[&](const geometry::PlaneEntrance&) {
+                   return Found(geometry::ExactPlane{origin_mm, normal});
+                 },
                  [&](const geometry::CylinderEntrance& cylinder) {
                    if (cylinder.conic != 0.0 || std::abs(cylinder.radius_mm) > kMaxExactRadius_mm) return Found();
                    const Curvature at = curvature_at(origin_mm, normal, cylinder.radius_mm);

@@ -213,7 +213,8 @@ geometry::Part part_of_design(const Design& design, Warnings* warnings) {
       throw InputError("must have a convex entrance face without holes if the design has an [entrance_surface]");
     return part;
   } catch (const InputError& error) {
-    throw InputError(design.where(mesh_file_key(design)), fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
+    throw InputError(design.where(mesh_file_key(design)),
+                     fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
   }
 }
 

@@ -23,8 +23,8 @@ constexpr Condition kPartTable[] = {kTableOfNoBall};
 constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", whose surfaces are smooth")};
-constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                        is(kKind, kRtp)};
+constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                        is_absent("part.plate_mm", kNotWithMesh), is(kKind, kRtp)};
 
 const Table kSurfaceTables[] = {
     {.name = "scratches",

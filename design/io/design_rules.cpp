@@ -337,7 +337,8 @@ void check_thickness(const Document& document, const PartSpec& part) {
 }
 
 void check_bowl(const Document& document) {
-  if (document.has("part.mesh") || document.has("part.solid") || document.has("part.plate_mm") || has_elements(document))
+  if (document.has("part.mesh") || document.has("part.solid") || document.has("part.plate_mm") ||
+      has_elements(document))
     return;
   const double most_deg = read_balls(document).max_mirror_half_angle_deg();
   const auto given_deg = document.number_if("element.mirror_half_angle_deg");

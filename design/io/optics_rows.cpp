@@ -185,15 +185,17 @@ constexpr Row kDetectorRows[] = {
     {"acceptance_half_angle_deg", NumberOrNumbers{{.low = 0.0, .low_included = false, .high = 90.0}}, 0.5,
      "Half-angle of the acceptance cone, in air. For a list, the RRE of each half-angle is computed."}};
 
-constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                       is(kKind, kRtp)};
-constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
+constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                       is_absent("part.plate_mm", kNotWithMesh), is(kKind, kRtp)};
+constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                      is_absent("part.plate_mm", kNotWithMesh),
                                       is(kKind, geometry::kCubeKindsOfDesigns)};
 constexpr Condition kArcsecOfCube[] = {
-    is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
+    is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+    is_absent("part.plate_mm", kNotWithMesh), is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
     is_absent("surface.dihedral_error_arcmin", "not allowed together with dihedral_error_arcmin")};
-constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh)};
+constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                 is_absent("part.plate_mm", kNotWithMesh)};
 constexpr Condition kModelOfMap[] = {is_given("height_map")};
 constexpr Condition kModelOfOthers[] = {is_absent("height_map")};
 constexpr Condition kAbgOnly[] = {is("model", kAbg)};

@@ -162,18 +162,20 @@ constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate), is_absen
 constexpr Condition kSolidOnly[] = {is_absent("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
 constexpr Condition kWithSolid[] = {is_absent("plate_mm", kBesidePlate), is_given("solid")};
-constexpr Condition kFacetsOnly[] = {is_absent("plate_mm", kBesidePlate),
-                                     is_absent("mesh", "not allowed together with mesh, which determines all facets"),
-                                     is_absent("solid", "not allowed together with solid, which determines all facets")};
+constexpr Condition kFacetsOnly[] = {
+    is_absent("plate_mm", kBesidePlate),
+    is_absent("mesh", "not allowed together with mesh, which determines all facets"),
+    is_absent("solid", "not allowed together with solid, which determines all facets")};
 constexpr Words kFacings = {"up", "down"};
 constexpr double kNoRotations[] = {0.0, 0.0, 0.0};
 
-constexpr Row kRotateRow = {
-    "rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"}, std::span<const double>(kNoRotations),
-    "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then about z of the part frame."};
+constexpr Row kRotateRow = {"rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"},
+                            std::span<const double>(kNoRotations),
+                            "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then "
+                            "about z of the part frame."};
 constexpr Row kFacingRow = {"facing", Word{kFacings}, "up",
-                          "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
-                          "rotated by 180 degrees about x, so that its entrance face points towards +z."};
+                            "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
+                            "rotated by 180 degrees about x, so that its entrance face points towards +z."};
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL or OBJ file"}, kNone,

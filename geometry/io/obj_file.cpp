@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kLargestObjCoordinateMm = 1e6;
 // Statements that do not change the shape.
-constexpr std::array<std::string_view, 13> kIgnoredStatements = {"vn", "vt",     "vp",     "g", "o",   "s",  "usemtl",
+constexpr std::array<std::string_view, 13> kIgnoredStatements = {"vn", "vt",     "vp",     "g", "o",   "s", "usemtl",
                                                                  "mg", "mtllib", "usemap", "l", "lod", "p"};
 
 class ObjReader {
@@ -79,8 +79,9 @@ class ObjReader {
     if (word == "v") return add_vertex();
     if (word == "f") return add_face();
     if (std::find(kIgnoredStatements.begin(), kIgnoredStatements.end(), word) != kIgnoredStatements.end()) return;
-    fail(fmt::format("not an OBJ file with vertices and plane faces: expected a statement such as \"v\" or \"f\", got {}",
-                     in_quotes(word)));
+    fail(fmt::format(
+        "not an OBJ file with vertices and plane faces: expected a statement such as \"v\" or \"f\", got {}",
+        in_quotes(word)));
   }
 
   void add_vertex() {
@@ -149,7 +150,8 @@ class ObjReader {
     for (const Polygon& piece : convex_decomposition({loop})) {
       const auto corner = [&](std::size_t k) { return vertex_at.at({piece[k].x(), piece[k].y()}); };
       for (std::size_t k = 1; k + 1 < piece.size(); ++k)
-        is_clockwise ? add_triangle(corner(0), corner(k + 1), corner(k)) : add_triangle(corner(0), corner(k), corner(k + 1));
+        is_clockwise ? add_triangle(corner(0), corner(k + 1), corner(k))
+                     : add_triangle(corner(0), corner(k), corner(k + 1));
     }
   }
 

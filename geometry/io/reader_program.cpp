@@ -82,9 +82,10 @@ class RunningProgram {
 };
 
 [[noreturn]] void refuse_slow_reading() {
-  throw InputError(fmt::format("must be readable within {} s, but reading takes longer: export fewer faces from the CAD "
-                               "program",
-                               kMaxReaderSeconds));
+  throw InputError(
+      fmt::format("must be readable within {} s, but reading takes longer: export fewer faces from the CAD "
+                  "program",
+                  kMaxReaderSeconds));
 }
 
 [[noreturn]] void refuse_broken_pipe() {
@@ -122,7 +123,8 @@ std::string output_of_reader(std::string_view name, std::vector<std::string> arg
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) refuse_broken_pipe();
   const PipeEnd from_program(ends[0]);
   PipeEnd to_parent(ends[1]);
-  // Other processes may slow the program down. The time limit of the clock is therefore longer than that of the program.
+  // Other processes may slow the program down. The time limit of the clock is therefore longer than that of the
+  // program.
   const ReaderClock::time_point end = ReaderClock::now() + std::chrono::seconds(6 * kMaxReaderSeconds);
   RunningProgram running(program, std::move(arguments), to_parent);
   to_parent.close();

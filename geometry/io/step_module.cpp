@@ -2,6 +2,7 @@
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRep_Builder.hxx>
+#include <Eigen/Geometry>
 #include <ElCLib.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
@@ -23,11 +24,11 @@
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array2OfPnt.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
@@ -36,7 +37,6 @@
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <XSControl_WorkSession.hxx>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <gp_Ax2.hxx>
@@ -94,38 +94,37 @@ Handle(Geom_Surface) geometry_of(const SplinePatch& patch) {
           gp_Pnt(patch.x.greville(i), patch.y.greville(j), patch.heights_mm[j * patch.x.count() + i]);
   const KnotVector along_x(patch.x);
   const KnotVector along_y(patch.y);
-  return new Geom_BSplineSurface(poles, along_x.values, along_y.values, along_x.multiplicities,
-                                 along_y.multiplicities, KnotVector::kDegree, KnotVector::kDegree);
+  return new Geom_BSplineSurface(poles, along_x.values, along_y.values, along_x.multiplicities, along_y.multiplicities,
+                                 KnotVector::kDegree, KnotVector::kDegree);
 }
 
 /// Returns the surface of the entrance face. The seam of a cylinder or a sphere is opposite to the middle of the face,
 /// and the poles of a sphere are 90 degrees away from it.
 Handle(Geom_Surface) surface_of(const FaceSurface& surface) {
-  return std::visit(
-      Overloaded{[](const ExactPlane& plane) -> Handle(Geom_Surface) {
-                   return new Geom_Plane(gp_Pln(point(plane.origin_mm), direction(plane.normal)));
-                 },
-                 [](const ExactCylinder& cylinder) -> Handle(Geom_Surface) {
-                   const gp_Ax3 axes(point(cylinder.origin_mm), direction(cylinder.axis),
-                                     direction(-cylinder.towards));
-                   return new Geom_CylindricalSurface(axes, cylinder.radius_mm);
-                 },
-                 [](const ExactSphere& sphere) -> Handle(Geom_Surface) {
-                   const gp_Ax3 axes(point(sphere.centre_mm), direction(perpendicular_to(sphere.towards)),
-                                     direction(-sphere.towards));
-                   return new Geom_SphericalSurface(axes, sphere.radius_mm);
-                 },
-                 [](const SplinePatch& patch) -> Handle(Geom_Surface) { return geometry_of(patch); }},
-      surface);
+  return std::visit(Overloaded{[](const ExactPlane& plane) -> Handle(Geom_Surface) {
+                                 return new Geom_Plane(gp_Pln(point(plane.origin_mm), direction(plane.normal)));
+                               },
+                               [](const ExactCylinder& cylinder) -> Handle(Geom_Surface) {
+                                 const gp_Ax3 axes(point(cylinder.origin_mm), direction(cylinder.axis),
+                                                   direction(-cylinder.towards));
+                                 return new Geom_CylindricalSurface(axes, cylinder.radius_mm);
+                               },
+                               [](const ExactSphere& sphere) -> Handle(Geom_Surface) {
+                                 const gp_Ax3 axes(point(sphere.centre_mm), direction(perpendicular_to(sphere.towards)),
+                                                   direction(-sphere.towards));
+                                 return new Geom_SphericalSurface(axes, sphere.radius_mm);
+                               },
+                               [](const SplinePatch& patch) -> Handle(Geom_Surface) { return geometry_of(patch); }},
+                    surface);
 }
 
 /// Returns true if the normal of the surface in OpenCASCADE points into the solid.
 bool is_reversed(const FaceSurface& surface) {
-  return std::visit(Overloaded{[](const ExactPlane&) { return false; },
-                               [](const ExactCylinder& cylinder) { return !cylinder.is_convex; },
-                               [](const ExactSphere& sphere) { return !sphere.is_convex; },
-                               [](const SplinePatch&) { return false; }},
-                    surface);
+  return std::visit(
+      Overloaded{[](const ExactPlane&) { return false; },
+                 [](const ExactCylinder& cylinder) { return !cylinder.is_convex; },
+                 [](const ExactSphere& sphere) { return !sphere.is_convex; }, [](const SplinePatch&) { return false; }},
+      surface);
 }
 
 /// Part of a curve between two parameters.
@@ -148,7 +147,8 @@ CurveSection circle_section(const Vec3& centre_mm, const Vec3& normal, double ra
   throw std::runtime_error("an edge of the entrance face is longer than half a circle");
 }
 
-/// Returns the section of the ellipse in which a plane cuts a cylinder, or nothing if the plane is parallel to the axis.
+/// Returns the section of the ellipse in which a plane cuts a cylinder, or nothing if the plane is parallel to the
+/// axis.
 CurveSection ellipse_section(const ExactCylinder& cylinder, const Vec3& normal, const Vec3& from, const Vec3& to) {
   // Sine of the angle between plane and axis below which the section is a straight line.
   constexpr double kParallel = 1e-9;
@@ -172,17 +172,16 @@ CurveSection ellipse_section(const ExactCylinder& cylinder, const Vec3& normal, 
 /// the line is straight. It is also null for a bicubic patch, whose edges are given.
 CurveSection section_between(const FaceSurface& surface, const Vec3& from, const Vec3& to) {
   const Vec3 normal = Vec3(from.y() - to.y(), to.x() - from.x(), 0.0).normalized();
-  return std::visit(Overloaded{[](const ExactPlane&) { return CurveSection{}; },
-                               [&](const ExactCylinder& cylinder) {
-                                 return ellipse_section(cylinder, normal, from, to);
-                               },
-                               [&](const ExactSphere& sphere) {
-                                 const double distance = (from - sphere.centre_mm).dot(normal);
-                                 const Vec3 centre = sphere.centre_mm + distance * normal;
-                                 return circle_section(centre, normal, (from - centre).norm(), from, to);
-                               },
-                               [](const SplinePatch&) { return CurveSection{}; }},
-                    surface);
+  return std::visit(
+      Overloaded{[](const ExactPlane&) { return CurveSection{}; },
+                 [&](const ExactCylinder& cylinder) { return ellipse_section(cylinder, normal, from, to); },
+                 [&](const ExactSphere& sphere) {
+                   const double distance = (from - sphere.centre_mm).dot(normal);
+                   const Vec3 centre = sphere.centre_mm + distance * normal;
+                   return circle_section(centre, normal, (from - centre).norm(), from, to);
+                 },
+                 [](const SplinePatch&) { return CurveSection{}; }},
+      surface);
 }
 
 CurveSection section_of(const PatchEdge& edge, const Vec3& from, const Vec3& to) {
@@ -190,8 +189,8 @@ CurveSection section_of(const PatchEdge& edge, const Vec3& from, const Vec3& to)
   TColgp_Array1OfPnt poles(1, static_cast<int>(edge.axis.count()));
   for (std::size_t k = 0; k < edge.axis.count(); ++k) {
     const double share = edge.axis.greville(k);
-    poles(static_cast<int>(k) + 1) = gp_Pnt(std::lerp(from.x(), to.x(), share), std::lerp(from.y(), to.y(), share),
-                                            edge.heights_mm[k]);
+    poles(static_cast<int>(k) + 1) =
+        gp_Pnt(std::lerp(from.x(), to.x(), share), std::lerp(from.y(), to.y(), share), edge.heights_mm[k]);
   }
   return {new Geom_BSplineCurve(poles, knots.values, knots.multiplicities, KnotVector::kDegree)};
 }
@@ -269,10 +268,10 @@ class SolidBuilder {
   /// \pre from < to
   void add_edge(std::uint32_t from, std::uint32_t to, const CurveSection& section) {
     TopoDS_Edge& made = edges_[key_of(from, to)];
-    BRepBuilderAPI_MakeEdge maker = section.curve.IsNull()
-                                        ? BRepBuilderAPI_MakeEdge(vertices_[from], vertices_[to])
-                                        : BRepBuilderAPI_MakeEdge(section.curve, vertices_[from], vertices_[to],
-                                                                  section.first, section.last);
+    BRepBuilderAPI_MakeEdge maker =
+        section.curve.IsNull()
+            ? BRepBuilderAPI_MakeEdge(vertices_[from], vertices_[to])
+            : BRepBuilderAPI_MakeEdge(section.curve, vertices_[from], vertices_[to], section.first, section.last);
     if (!maker.IsDone()) throw std::runtime_error("OpenCASCADE could not make an edge of the solid");
     made = maker.Edge();
   }

@@ -1,5 +1,6 @@
 // Program that reads the solids of a STEP file with OpenCASCADE and divides their faces into triangles.
 // Usage: retrace_solid_reader FILE CHORD_MM. The result is written to standard output (solid_message.h).
+#include <sys/resource.h>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
@@ -26,7 +27,6 @@
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <sys/resource.h>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -123,7 +123,8 @@ class TriangleCollector {
       }
       of_edge.push_back(number_of(TopExp::LastVertex(forward)));
     }
-    if (of_edge.size() != count) throw std::runtime_error("has faces that do not share the points of their common edge");
+    if (of_edge.size() != count)
+      throw std::runtime_error("has faces that do not share the points of their common edge");
     for (std::size_t k = 0; k < count; ++k)
       numbers[static_cast<std::size_t>(polygon->Node(static_cast<int>(k) + 1) - 1)] = of_edge[k];
   }

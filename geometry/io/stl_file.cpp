@@ -114,8 +114,8 @@ bool is_binary(std::string_view begin, std::uintmax_t file_bytes) {
   return begin.size() >= binary_length(0) && file_bytes == binary_length(binary_count(begin));
 }
 
-/// Returns the number of bytes after the last triangle of a binary file. Returns 0 if there are none, or if the file has
-/// no triangles or is too short for them.
+/// Returns the number of bytes after the last triangle of a binary file. Returns 0 if there are none, or if the file
+/// has no triangles or is too short for them.
 std::size_t bytes_after_triangles(std::string_view begin, std::uintmax_t file_bytes) {
   if (begin.size() < binary_length(0) || binary_count(begin) == 0) return 0;
   const std::size_t wanted = binary_length(binary_count(begin));

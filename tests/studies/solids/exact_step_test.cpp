@@ -73,10 +73,11 @@ TEST(ExactStep, SphericalFacesAreSpheres) {
     const ExactSphere sphere{Vec3(1.5, 1.5, kHeightMm - radius_mm), Vec3(0.0, 0.0, radius_mm > 0.0 ? 1.0 : -1.0),
                              std::abs(radius_mm), radius_mm > 0.0};
     const ExactBoundary boundary = exact_boundary(prisms(), *surface_over_centre(sag), sphere, 1e-6);
-    const double volume_mm3 = volume_of_prisms_mm3() + integral_over_square([&](double x, double y) {
-                                const double r2 = std::pow(x - 1.5, 2.0) + std::pow(y - 1.5, 2.0);
-                                return kHeightMm - r2 / (radius_mm * (1.0 + std::sqrt(1.0 - r2 / (radius_mm * radius_mm))));
-                              });
+    const double volume_mm3 =
+        volume_of_prisms_mm3() + integral_over_square([&](double x, double y) {
+          const double r2 = std::pow(x - 1.5, 2.0) + std::pow(y - 1.5, 2.0);
+          return kHeightMm - r2 / (radius_mm * (1.0 + std::sqrt(1.0 - r2 / (radius_mm * radius_mm))));
+        });
     EXPECT_NEAR(boundary.volume_mm3, volume_mm3, 1e-9 * volume_mm3);
     const StepFindings found = expect_exact_solid(boundary);
     EXPECT_EQ(found.spheres, 1) << radius_mm;
@@ -129,8 +130,8 @@ TEST(ExactStep, ObliqueSidesHaveExactEdges) {
     return exact_boundary(hexagon, EntranceSurface(FreeformSurface(sag, std::nullopt, {}, {}), origin), surface, 1e-6);
   };
   EXPECT_EQ(expect_exact_solid(made(sphere, ExactSphere{middle, Vec3::UnitZ(), 6.0, true})).spheres, 1);
-  EXPECT_EQ(expect_exact_solid(made(cylinder, ExactCylinder{middle, Vec3::UnitY(), Vec3::UnitZ(), 6.0, true})).cylinders,
-            1);
+  EXPECT_EQ(
+      expect_exact_solid(made(cylinder, ExactCylinder{middle, Vec3::UnitY(), Vec3::UnitZ(), 6.0, true})).cylinders, 1);
 }
 
 TEST(ExactStep, OtherSurfacesAreSplinesWithinTheTolerance) {
@@ -192,11 +193,15 @@ TEST(ExactStep, SplinesReproduceCubicPolynomials) {
     for (int k = 0; k <= 100; ++k) {
       const Vec2 at(-1.0 + 0.03 * k, 0.5 + std::fmod(0.618034 * k, 1.0));
       EXPECT_NEAR(patch.height_mm(at), cubic(at), 1e-13 * 20.0);
-      EXPECT_NEAR(spline_value(patch.x, [&] {
-                    std::vector<double> positions;
-                    for (std::size_t i = 0; i < count; ++i) positions.push_back(patch.x.greville(i));
-                    return positions;
-                  }(), at.x()), at.x(), 1e-14 * 4.0);
+      EXPECT_NEAR(spline_value(
+                      patch.x,
+                      [&] {
+                        std::vector<double> positions;
+                        for (std::size_t i = 0; i < count; ++i) positions.push_back(patch.x.greville(i));
+                        return positions;
+                      }(),
+                      at.x()),
+                  at.x(), 1e-14 * 4.0);
     }
   }
 }
