@@ -16,9 +16,8 @@ namespace retrace::design {
 std::shared_ptr<const geometry::EntranceSurface> surface_of(const EntranceForm& form, const geometry::Vec3& origin_mm);
 
 /// Returns the entrance surface that keys of a design describe, in closed form. Returns nothing unless it is a plane, a
-/// circular cylinder or a sphere of at most 100 m radius. Rounding errors of larger radii would exceed the tolerances of
-/// CAD programs.
-/// \param origin_mm as in surface_of()
+/// circular cylinder or a sphere of at most 100 m radius. Rounding errors of larger radii would exceed the tolerances
+/// of CAD programs. \param origin_mm as in surface_of()
 std::optional<geometry::FaceSurface> closed_form_of(const EntranceForm& form, const geometry::Vec3& origin_mm);
 
 /// Completes a design whose elements are placed below its entrance surface (geometry::OffsetSubstrate). Sets the

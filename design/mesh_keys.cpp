@@ -12,7 +12,7 @@ MeshKeys mesh_keys_of(const Design& design) {
   keys.scale = document.number_if("part.scale").value_or(keys.scale);
   keys.weld_mm = document.number_if("part.weld_mm").value_or(keys.weld_mm);
   keys.chord_mm = document.number_if("part.chord_mm").value_or(keys.chord_mm);
-  keys.faces_down = document.has("part.face") && document.text("part.face") == "down";
+  keys.faces_down = document.has("part.facing") && document.text("part.facing") == "down";
   if (document.has("part.rotate_deg")) {
     const std::vector<double> given = document.numbers("part.rotate_deg");
     keys.rotate_deg = {given[0], given[1], given[2]};

@@ -11,12 +11,12 @@ namespace retrace::design {
 
 /// Description of the file from which a part is read.
 struct MeshKeys {
-  bool is_solid = false;                   ///< true: a STEP file with a solid; false: a triangle mesh
-  double scale = 1.0;                      ///< factor from the unit of a mesh to mm
-  std::array<double, 3> rotate_deg = {};   ///< rotations about x, then y, then z
-  bool faces_down = false;                 ///< true: after these rotations, the entrance face points towards -z
-  double weld_mm = 0.0;                    ///< maximum distance of vertices of a mesh that are merged
-  double chord_mm = 0.001;                 ///< maximum distance between curved faces of a solid and their triangles
+  bool is_solid = false;                  ///< true: a STEP file with a solid; false: a triangle mesh
+  double scale = 1.0;                     ///< factor from the unit of a mesh to mm
+  std::array<double, 3> rotate_deg = {};  ///< rotations about x, then y, then z
+  bool faces_down = false;                ///< true: after these rotations, the entrance face points towards -z
+  double weld_mm = 0.0;                   ///< maximum distance of vertices of a mesh that are merged
+  double chord_mm = 0.001;                ///< maximum distance between curved faces of a solid and their triangles
 };
 
 /// \pre the part of the design is a mesh or a solid

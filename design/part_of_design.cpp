@@ -122,7 +122,7 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, Warn
                                           is_small ? "metre" : "micrometre", shortest(probable_scale))));
 }
 
-/// Returns the rotation that the keys `rotate_deg` and `face` describe.
+/// Returns the rotation that the keys `rotate_deg` and `facing` describe.
 Eigen::Matrix3d part_from_file(const MeshKeys& keys) {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   const auto rotate = [&](const geometry::Vec3& axis, double angle_deg) {
@@ -213,7 +213,8 @@ geometry::Part part_of_design(const Design& design, Warnings* warnings) {
       throw InputError("must have a convex entrance face without holes if the design has an [entrance_surface]");
     return part;
   } catch (const InputError& error) {
-    throw InputError(design.where(mesh_file_key(design)), fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
+    throw InputError(design.where(mesh_file_key(design)),
+                     fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
   }
 }
 

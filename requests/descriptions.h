@@ -22,9 +22,9 @@ namespace retrace::requests {
 
 /// Tuple of all types of requests, for templates that iterate over the types.
 using AllRequests =
-    std::tuple<DetectorRequest, CameraRequest, RoadRequest, InspectRequest, JobRequest, FabricationRequest, MetrologyRequest,
-               SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest, TraceRequest,
-               RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
+    std::tuple<DetectorRequest, CameraRequest, RoadRequest, InspectRequest, JobRequest, FabricationRequest,
+               MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest,
+               TraceRequest, RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();

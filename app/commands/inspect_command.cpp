@@ -54,7 +54,8 @@ Command inspect_command() {
           .manual =
               "Describes a design without tracing light: counts, areas, depth, limits of total reflection, and whether "
               "its boundary is closed. For the toolmaker, it gives the smallest wall, the draft along the demoulding "
-              "direction, undercuts and the axes of the elements. Draws its plan, its section and a three-dimensional view.",
+              "direction, undercuts and the axes of the elements. Draws its plan, its section and a three-dimensional "
+              "view.",
           .reads = {"retrace.design/1"},
           .writes = {"retrace.inspect/2"},
           .begin = begins<InspectOptions>(arguments, run)};

@@ -268,7 +268,7 @@ void set_shape(Document& document, const Design& design) {
                           Keys part(document, "part");
                           part.set_word(keys.is_solid ? "solid" : "mesh", mesh.name);
                           part.set("rotate_deg", list_of(keys.rotate_deg));
-                          part.set_choice("face", keys.faces_down ? 1 : 0);
+                          part.set_choice("facing", keys.faces_down ? 1 : 0);
                           if (keys.is_solid) return part.set("chord_mm", keys.chord_mm);
                           part.set("scale", keys.scale);
                           part.set("weld_mm", keys.weld_mm);

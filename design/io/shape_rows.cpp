@@ -184,16 +184,16 @@ constexpr Condition kFacetsOnly[] = {
     is_absent("plate_mm", kBesidePlate),
     is_absent("mesh", "not allowed together with mesh, which determines all facets"),
     is_absent("solid", "not allowed together with solid, which determines all facets")};
-constexpr Words kFacesOfFile = {"up", "down"};
+constexpr Words kFacings = {"up", "down"};
 constexpr double kNoRotations[] = {0.0, 0.0, 0.0};
 
 constexpr Row kRotateRow = {"rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"},
                             std::span<const double>(kNoRotations),
                             "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then "
                             "about z of the part frame."};
-constexpr Row kFaceRow = {"face", Word{kFacesOfFile}, "up",
-                          "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
-                          "rotated by 180 degrees about x, so that its entrance face points towards +z."};
+constexpr Row kFacingRow = {"facing", Word{kFacings}, "up",
+                            "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
+                            "rotated by 180 degrees about x, so that its entrance face points towards +z."};
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL or OBJ file"}, kNone,
@@ -207,8 +207,8 @@ constexpr Row kPartRows[] = {
     {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
     where(kRotateRow, kWithMesh),
     where(kRotateRow, kWithSolid),
-    where(kFaceRow, kWithMesh),
-    where(kFaceRow, kWithSolid),
+    where(kFacingRow, kWithMesh),
+    where(kFacingRow, kWithSolid),
     {"weld_mm", Number{{.low = 0.0, .high = 1.0}}, 0.0,
      "Maximum distance of vertices that are merged to one vertex. 0: only vertices at the same position are merged.",
      kWithMesh},

@@ -56,8 +56,7 @@ class ContinuedHeights {
   }
 
   bool is_over_part(const Vec2& point_mm) const {
-    return std::any_of(pieces_.begin(), pieces_.end(),
-                       [&](const Polygon& piece) { return contains(piece, point_mm); });
+    return std::any_of(pieces_.begin(), pieces_.end(), [&](const Polygon& piece) { return contains(piece, point_mm); });
   }
 
  private:
@@ -173,7 +172,8 @@ void add_triangle_measures(const EntranceSurface& surface, const std::array<Vec2
 
 /// Returns the volume between z = 0 and a surface over the polygons, and the area of the surface. The number of cells
 /// is doubled until the result no longer changes.
-SurfaceMeasures surface_measures(const EntranceSurface& surface, const std::vector<Polygon>& polygons, int first_cells) {
+SurfaceMeasures surface_measures(const EntranceSurface& surface, const std::vector<Polygon>& polygons,
+                                 int first_cells) {
   SurfaceMeasures last;
   for (int cells = first_cells;; cells *= 2) {
     SurfaceMeasures sum;
@@ -226,8 +226,8 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, bool> entrance_edges(const Fac
 }
 
 BoundaryMesh covered_boundary(const Part& part, double top_mm) {
-  const Entrance cover = std::make_shared<const EntranceSurface>(FreeformSurface(Sag{}, std::nullopt, {}, {}),
-                                                                 Vec3(0.0, 0.0, top_mm));
+  const Entrance cover =
+      std::make_shared<const EntranceSurface>(FreeformSurface(Sag{}, std::nullopt, {}, {}), Vec3(0.0, 0.0, top_mm));
   return curved_boundary(part, cover, 1.0).mesh;
 }
 

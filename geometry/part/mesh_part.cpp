@@ -76,8 +76,8 @@ class PartBuilder {
     }
     top_z_ = upper.z();
     tolerance_mm_ = kSinglePrecision * (upper - lower).norm();
-    rounding_mm_ = rounding_mm.value_or(kVertexRounding *
-                                        std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()));
+    rounding_mm_ =
+        rounding_mm.value_or(kVertexRounding * std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()));
   }
 
   Part build() {
@@ -131,7 +131,8 @@ class PartBuilder {
           "the mesh has no entrance face: its highest points must form one horizontal face that points towards +z");
     auto next = borders(top, "the entrance face of the mesh");
     while (!next.empty()) loops_.push_back(corners_of(take_ring(next)));
-    std::stable_sort(loops_.begin(), loops_.end(), [](const Polygon& a, const Polygon& b) { return area(a) > area(b); });
+    std::stable_sort(loops_.begin(), loops_.end(),
+                     [](const Polygon& a, const Polygon& b) { return area(a) > area(b); });
     if (loops_.front().size() < 3) throw InputError("the entrance face of the mesh has no area");
     if (loops_.size() > 1 && area(loops_[1]) >= 0.0)
       throw InputError("the entrance face of the mesh must be one face, but it consists of several faces");
@@ -191,7 +192,8 @@ class PartBuilder {
       for (const Side& side : sides_) beyond = std::max(beyond, side.normal.dot(p) - side.offset_mm);
       return beyond;
     }
-    if (std::any_of(pieces_.begin(), pieces_.end(), [&](const Polygon& piece) { return contains(piece, p); })) return 0.0;
+    if (std::any_of(pieces_.begin(), pieces_.end(), [&](const Polygon& piece) { return contains(piece, p); }))
+      return 0.0;
     double nearest = INFINITY;
     for (const Side& side : sides_) nearest = std::min(nearest, side.distance(p));
     return nearest;
@@ -240,9 +242,8 @@ class PartBuilder {
   /// Returns the side that contains a triangle, or null if there is none.
   const Side* side_of(const std::array<std::uint32_t, 3>& triangle) const {
     const auto found = std::find_if(sides_.begin(), sides_.end(), [&](const Side& side) {
-      return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-        return side.distance(settled_[v].head<2>()) <= 2.0 * tolerance_mm_;
-      });
+      return std::all_of(triangle.begin(), triangle.end(),
+                         [&](std::uint32_t v) { return side.distance(settled_[v].head<2>()) <= 2.0 * tolerance_mm_; });
     });
     return found == sides_.end() ? nullptr : &*found;
   }

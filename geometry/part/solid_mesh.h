@@ -15,9 +15,9 @@ namespace retrace::geometry {
 /// solids share no vertices.
 struct SolidMesh {
   TriangleMesh mesh;
-  std::vector<std::uint32_t> face_of;              ///< number of the face of each triangle
+  std::vector<std::uint32_t> face_of;             ///< number of the face of each triangle
   std::vector<std::optional<FacetPlane>> planes;  ///< plane of each face; empty for curved faces
-  std::size_t solids = 0;                          ///< number of solids
+  std::size_t solids = 0;                         ///< number of solids
 
   std::size_t curved_faces() const;
 };

@@ -98,8 +98,8 @@ double SplinePatch::height_mm(const Vec2& point_mm) const {
   double height = 0.0;
   for (std::size_t j = 0; j <= kDegree; ++j)
     for (std::size_t i = 0; i <= kDegree; ++i)
-      height += along_y.value.at(j) * along_x.value.at(i) *
-                heights_mm[(along_y.first + j) * x.count() + along_x.first + i];
+      height +=
+          along_y.value.at(j) * along_x.value.at(i) * heights_mm[(along_y.first + j) * x.count() + along_x.first + i];
   return height;
 }
 

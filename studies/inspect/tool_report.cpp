@@ -114,8 +114,7 @@ void add_back(DraftSum& draft, const Part& part) {
       const Vec3 centroid = centroid_of(corners_of(patch, facet));
       const double area_mm2 = geometry::facet_area(patch, facet);
       for (const geometry::Placement& at : part.placements)
-        if (at.patch == number)
-          draft.add(facet.role, facet.normal, area_mm2, centroid + translation_of(at));
+        if (at.patch == number) draft.add(facet.role, facet.normal, area_mm2, centroid + translation_of(at));
     }
     for (const auto& ring : patch.border_walls) {
       std::vector<Vec3> corners;
@@ -157,7 +156,8 @@ void add_entrance(DraftSum& draft, const Part& part, const std::optional<geometr
     return;
   }
   constexpr int kCells = 200;
-  const geometry::EntranceSurface& surface = **std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&*entrance);
+  const geometry::EntranceSurface& surface =
+      **std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&*entrance);
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   Vec3 steepest = Vec3::UnitZ();
   Vec3 steepest_at = Vec3::Zero();
@@ -205,9 +205,8 @@ std::vector<ElementFacets> elements_of(const Part& part, const SurfacePatch& pat
     for (std::uint32_t k = 0; k < cell.facet_count; ++k) {
       const PatchFacet& facet = patch.facets[cell.first_facet + k];
       if (facet.role != FacetRole::retro_facet) continue;
-      const bool is_known = std::any_of(element.normals.begin(), element.normals.end(), [&](const Vec3& n) {
-        return (n - facet.normal).norm() < kSameNormal;
-      });
+      const bool is_known = std::any_of(element.normals.begin(), element.normals.end(),
+                                        [&](const Vec3& n) { return (n - facet.normal).norm() < kSameNormal; });
       if (!is_known) element.normals.push_back(facet.normal);
       element.plan_mm2 += std::abs(facet.normal.z()) * geometry::facet_area(patch, facet);
       for (const Vec3& p : corners_of(patch, facet)) element.points.push_back(p.head<2>());
@@ -288,8 +287,8 @@ std::int64_t ToolReport::undercuts() const {
 ToolReport report_tool(const Part& part, const std::optional<geometry::Entrance>& entrance,
                        const InspectRequest& request) {
   ToolReport report;
-  report.demoulding = geometry::direction_at(Angle::from_deg(request.demould_tilt_deg),
-                                             Angle::from_deg(request.demould_azimuth_deg));
+  report.demoulding =
+      geometry::direction_at(Angle::from_deg(request.demould_tilt_deg), Angle::from_deg(request.demould_azimuth_deg));
   report.wall = smallest_wall(part, entrance);
   DraftSum draft(report.demoulding, request.min_draft_deg);
   add_entrance(draft, part, entrance, report.demoulding);

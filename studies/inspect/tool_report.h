@@ -1,6 +1,7 @@
 #pragma once
 
-// Properties of a part that its toolmaker needs: smallest wall, draft, undercuts, optical area and axes of the elements.
+// Properties of a part that its toolmaker needs: smallest wall, draft, undercuts, optical area and axes of the
+// elements.
 
 #include <cstdint>
 #include <optional>

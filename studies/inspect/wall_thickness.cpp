@@ -144,8 +144,7 @@ class SurfaceFoot {
       const auto sample = surface_.at(at);
       const Vec2 gradient = (at - p.head<2>()) + (sample.height_mm - p.z()) * sample.slope;
       // The inverse of I + s s^T is I - s s^T / (1 + s^2).
-      const Vec2 newton =
-          gradient - sample.slope.dot(gradient) / (1.0 + sample.slope.squaredNorm()) * sample.slope;
+      const Vec2 newton = gradient - sample.slope.dot(gradient) / (1.0 + sample.slope.squaredNorm()) * sample.slope;
       const Vec2 next = within_outline(at - newton, outline_);
       const double moved_mm = (next - at).norm();
       at = next;

@@ -145,9 +145,9 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
   try {
     const auto* const surface = std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&entrance);
     if (model == SolidEntrance::exact && surface != nullptr) {
-      set_exact_boundary(
-          solid, geometry::exact_boundary(part, **surface, design::closed_form_of_entrance(solid.design, part),
-                                          request.surface_error_mm.value_or(kSplineErrorMm)));
+      set_exact_boundary(solid,
+                         geometry::exact_boundary(part, **surface, design::closed_form_of_entrance(solid.design, part),
+                                                  request.surface_error_mm.value_or(kSplineErrorMm)));
       return;
     }
     geometry::CurvedBoundary boundary =

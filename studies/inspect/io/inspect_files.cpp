@@ -346,9 +346,9 @@ std::string tool_text(const Inspection& i) {
   const auto steepest = std::ranges::min_element(tool.draft, {}, &DraftOfFaces::min_draft_deg);
   std::string text = fmt::format("  smallest wall       {} mm at x = {}, y = {} mm\n", fixed(tool.wall.thickness_mm, 6),
                                  fixed(tool.wall.back_mm.x(), 4), fixed(tool.wall.back_mm.y(), 4));
-  text += fmt::format("  smallest draft      {} degrees ({}); {} faces below the limit, {} undercuts\n",
-                      fixed(steepest->min_draft_deg, 3), face_name(steepest->role), tool.below_limit(),
-                      tool.undercuts());
+  text +=
+      fmt::format("  smallest draft      {} degrees ({}); {} faces below the limit, {} undercuts\n",
+                  fixed(steepest->min_draft_deg, 3), face_name(steepest->role), tool.below_limit(), tool.undercuts());
   text += fmt::format("  optical area        {} % of the plan\n", fixed(100.0 * tool.optical_area_fraction, 3));
   if (!tool.pin_axes.empty()) {
     const PinAngles angles = pin_angles(tool);

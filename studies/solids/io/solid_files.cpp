@@ -135,9 +135,10 @@ std::string solid_table(const Solid& solid) {
   text += fmt::format("  surface    {} mm2\n", fixed(solid.area_mm2, 6));
   if (solid.exact) {
     text += fmt::format("  faces      {}\n", solid.exact->faces.faces.size());
-    text += fmt::format("  entrance   {} within {:.2g} mm of the exact surface\n",
-                        surface_name(solid.exact->entrance->surface), *solid.surface_error_mm);
-    return text;
+    text += fmt::format("  entrance   {}", surface_name(solid.exact->entrance->surface));
+    if (*solid.surface_error_mm > 0.0)
+      text += fmt::format(" within {:.2g} mm of the exact surface", *solid.surface_error_mm);
+    return text + "\n";
   }
   text += fmt::format("  triangles  {}\n", solid.mesh.triangles.size());
   if (solid.surface_error_mm)

@@ -50,7 +50,8 @@ TEST(SmallestWall, BelowAnInclinedPlaneIsPerpendicular) {
   geometry::TriangleMesh mesh;
   for (const double y : {0.0, 3.0})
     for (const Vec2& p : profile) mesh.vertices.emplace_back(p.x(), y, p.y());
-  const std::vector<std::array<std::uint32_t, 3>> front = {{0, 1, 7}, {1, 2, 7}, {2, 3, 7}, {3, 6, 7}, {3, 4, 6}, {4, 5, 6}};
+  const std::vector<std::array<std::uint32_t, 3>> front = {{0, 1, 7}, {1, 2, 7}, {2, 3, 7},
+                                                           {3, 6, 7}, {3, 4, 6}, {4, 5, 6}};
   for (const auto& t : front) {
     mesh.triangles.push_back(t);
     mesh.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});
@@ -72,12 +73,12 @@ TEST(SmallestWall, BelowAnInclinedPlaneIsPerpendicular) {
 /// The facets of a prism are inclined by 45 degrees. A demoulding direction that is tilted by t across the roof edge
 /// leaves a draft of 45 - t on one facet of each prism.
 TEST(Draft, OfPrismsFollowsTheDemouldingDirection) {
-  const Part part = geometry::build_welded_part(
-      finite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0, 2.0, 1.0));
+  const Part part =
+      geometry::build_welded_part(finite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0, 2.0, 1.0));
   ASSERT_EQ(part.elements_full, 16);
   for (const double tilt_deg : {0.0, 20.0, 50.0}) {
-    const ToolReport report =
-        report_tool(part, std::nullopt, {.min_draft_deg = 10.0, .demould_tilt_deg = tilt_deg, .demould_azimuth_deg = 0.0});
+    const ToolReport report = report_tool(
+        part, std::nullopt, {.min_draft_deg = 10.0, .demould_tilt_deg = tilt_deg, .demould_azimuth_deg = 0.0});
     const DraftOfFaces facets = draft_of(report, FacetRole::retro_facet);
     EXPECT_NEAR(facets.min_draft_deg, 45.0 - tilt_deg, 1e-9);
     EXPECT_EQ(facets.faces, 32);
@@ -93,8 +94,8 @@ TEST(Draft, OfPrismsFollowsTheDemouldingDirection) {
   }
 }
 
-/// The angle between a facet of a cube corner and its axis is atan(1 / sqrt(2)). A cant of c degrees reduces the draft of
-/// the facet towards which the axis is tilted.
+/// The angle between a facet of a cube corner and its axis is atan(1 / sqrt(2)). A cant of c degrees reduces the draft
+/// of the facet towards which the axis is tilted.
 TEST(Draft, OfCubeCornersIsInClosedForm) {
   const double facet_deg = std::atan(std::sqrt(0.5)) / kDegree;
   const auto draft = [](const geometry::Element& element) {
@@ -123,8 +124,7 @@ TEST(OpticalArea, OfPrismsWithGapsIsTheirFractionOfThePlan) {
 
 /// The axes of the elements are parallel to z. Below a sphere, the angle to the normal is asin(r / R).
 TEST(PinAxes, BelowASphereHaveTheAngleOfItsNormal) {
-  const Part part =
-      geometry::build_part(finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 6.0, 5.0, 1.0));
+  const Part part = geometry::build_part(finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 6.0, 5.0, 1.0));
   const double radius_mm = 15.0;
   const ToolReport report = report_tool(part, sphere_entrance(radius_mm, 1.5, {3.0, 2.5}), {});
   EXPECT_GE(static_cast<std::int64_t>(report.pin_axes.size()), part.elements_full);
@@ -133,7 +133,9 @@ TEST(PinAxes, BelowASphereHaveTheAngleOfItsNormal) {
     const Vec2 from_centre = pin.centre_mm - Vec2(3.0, 2.5);
     EXPECT_NEAR(pin.angle_deg(), std::asin(from_centre.norm() / radius_mm) / kDegree, 1e-9);
     const double azimuth = std::atan2(-from_centre.y(), -from_centre.x());
-    if (from_centre.norm() > 1e-6) EXPECT_NEAR(std::cos(pin.azimuth_deg() * kDegree - azimuth), 1.0, 1e-9);
+    if (from_centre.norm() > 1e-6) {
+      EXPECT_NEAR(std::cos(pin.azimuth_deg() * kDegree - azimuth), 1.0, 1e-9);
+    }
   }
   EXPECT_TRUE(report_tool(part, std::nullopt, {}).pin_axes.empty());
 }

@@ -42,7 +42,7 @@ std::shared_ptr<const EntranceSurface> surface_over_centre(const Sag& sag) {
 
 /// Integrates a function over the square by Simpson's rule.
 double integral_over_square(const std::function<double(double, double)>& f) {
-  constexpr int kCells = 400;
+  constexpr int kCells = 200;
   const auto weight = [](int k) { return k == 0 || k == kCells ? 1.0 : k % 2 == 1 ? 4.0 : 2.0; };
   double sum = 0.0;
   for (int j = 0; j <= kCells; ++j)
@@ -73,10 +73,11 @@ TEST(ExactStep, SphericalFacesAreSpheres) {
     const ExactSphere sphere{Vec3(1.5, 1.5, kHeightMm - radius_mm), Vec3(0.0, 0.0, radius_mm > 0.0 ? 1.0 : -1.0),
                              std::abs(radius_mm), radius_mm > 0.0};
     const ExactBoundary boundary = exact_boundary(prisms(), *surface_over_centre(sag), sphere, 1e-6);
-    const double volume_mm3 = volume_of_prisms_mm3() + integral_over_square([&](double x, double y) {
-                                const double r2 = std::pow(x - 1.5, 2.0) + std::pow(y - 1.5, 2.0);
-                                return kHeightMm - r2 / (radius_mm * (1.0 + std::sqrt(1.0 - r2 / (radius_mm * radius_mm))));
-                              });
+    const double volume_mm3 =
+        volume_of_prisms_mm3() + integral_over_square([&](double x, double y) {
+          const double r2 = std::pow(x - 1.5, 2.0) + std::pow(y - 1.5, 2.0);
+          return kHeightMm - r2 / (radius_mm * (1.0 + std::sqrt(1.0 - r2 / (radius_mm * radius_mm))));
+        });
     EXPECT_NEAR(boundary.volume_mm3, volume_mm3, 1e-9 * volume_mm3);
     const StepFindings found = expect_exact_solid(boundary);
     EXPECT_EQ(found.spheres, 1) << radius_mm;
@@ -129,8 +130,8 @@ TEST(ExactStep, ObliqueSidesHaveExactEdges) {
     return exact_boundary(hexagon, EntranceSurface(FreeformSurface(sag, std::nullopt, {}, {}), origin), surface, 1e-6);
   };
   EXPECT_EQ(expect_exact_solid(made(sphere, ExactSphere{middle, Vec3::UnitZ(), 6.0, true})).spheres, 1);
-  EXPECT_EQ(expect_exact_solid(made(cylinder, ExactCylinder{middle, Vec3::UnitY(), Vec3::UnitZ(), 6.0, true})).cylinders,
-            1);
+  EXPECT_EQ(
+      expect_exact_solid(made(cylinder, ExactCylinder{middle, Vec3::UnitY(), Vec3::UnitZ(), 6.0, true})).cylinders, 1);
 }
 
 TEST(ExactStep, OtherSurfacesAreSplinesWithinTheTolerance) {
@@ -158,16 +159,29 @@ TEST(ExactStep, OtherSurfacesAreSplinesWithinTheTolerance) {
     }
 }
 
-// A surface that ends close to the part, such as a hemisphere, is continued outside the part.
+// A surface that ends close to the part, such as half an ellipsoid, is continued outside the part.
 TEST(ExactStep, SurfacesThatEndAtTheOutlineAreSplines) {
   const Part hexagon = build_welded_part(test::single_part(HexagonalCube{1.6}));
   const Vec2 centre = bounding_box(hexagon.outline).centre();
-  Sag sag;  // defined within 0.9 mm of the centre; the corners of the bounding box are 1.06 mm away
-  sag.formula = parse_formula("0.02 * sqrt(0.81 - r^2)", {"x", "y", "r"}, {});
+  Sag sag;  // defined within 1 mm of the centre; the corners of the bounding box are 1.06 mm away
+  sag.formula = parse_formula("0.02 * sqrt(1 - r^2)", {"x", "y", "r"}, {});
   const EntranceSurface surface(FreeformSurface(sag, std::nullopt, {}, {}), Vec3(centre.x(), centre.y(), kHeightMm));
   const ExactBoundary boundary = exact_boundary(hexagon, surface, std::nullopt, 1e-5);
   EXPECT_LE(boundary.entrance_error_mm, 1e-5);
   EXPECT_EQ(expect_exact_solid(boundary).splines, 1);
+}
+
+TEST(ExactStep, SizesOfFilesArePredicted) {
+  Sag sag;
+  sag.biconic = Biconic{{-1.0 / 30.0, -1.0 / 45.0}, {0.0, 0.0}};
+  const EntranceSurface surface(FreeformSurface(sag, std::nullopt, {}, {}), Vec3(5.0, 5.0, 3.0));
+  for (const auto& [element, arrangement] : {std::pair{Element(HexagonalCube{1.0}), Arrangement::honeycomb},
+                                             std::pair{Element(RtpElement{0.5, 0.5, 90.0}), Arrangement::offset}}) {
+    const Part part = build_welded_part(test::array_part(element, arrangement, 10.0, 10.0));
+    const ExactSolid solid = exact_boundary(part, surface, std::nullopt, 1e-6).solid;
+    const double megabytes = 1e-6 * static_cast<double>(step_text(solid, "test").size());
+    EXPECT_NEAR(predicted_step_cost(solid).megabytes / megabytes, 1.0, 0.25);
+  }
 }
 
 TEST(ExactStep, SplinesReproduceCubicPolynomials) {
@@ -179,11 +193,15 @@ TEST(ExactStep, SplinesReproduceCubicPolynomials) {
     for (int k = 0; k <= 100; ++k) {
       const Vec2 at(-1.0 + 0.03 * k, 0.5 + std::fmod(0.618034 * k, 1.0));
       EXPECT_NEAR(patch.height_mm(at), cubic(at), 1e-13 * 20.0);
-      EXPECT_NEAR(spline_value(patch.x, [&] {
-                    std::vector<double> positions;
-                    for (std::size_t i = 0; i < count; ++i) positions.push_back(patch.x.greville(i));
-                    return positions;
-                  }(), at.x()), at.x(), 1e-14 * 4.0);
+      EXPECT_NEAR(spline_value(
+                      patch.x,
+                      [&] {
+                        std::vector<double> positions;
+                        for (std::size_t i = 0; i < count; ++i) positions.push_back(patch.x.greville(i));
+                        return positions;
+                      }(),
+                      at.x()),
+                  at.x(), 1e-14 * 4.0);
     }
   }
 }

@@ -28,8 +28,8 @@ std::string mesh_design(const std::string& file, const std::string& keys = {}) {
 }
 
 double rre_of(const TemporaryFolder& folder, const std::string& design, std::size_t warnings = 0) {
-  const Outcome outcome = retrace(folder, {"rre", design, "--engine", "exact", "--cutoff", "1e-8", "--incidence=10",
-                                           "--json", "r.json"});
+  const Outcome outcome =
+      retrace(folder, {"rre", design, "--engine", "exact", "--cutoff", "1e-8", "--incidence=10", "--json", "r.json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(warnings_of(outcome).size(), warnings) << outcome.err;
   return folder.json("r.json").at("points").at(0).at("rre");
@@ -62,7 +62,7 @@ TEST(MeshKeys, ObjFilesAndRotationsGiveTheDesign) {
   folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [90, 0, 0]\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
   // The entrance face points to -z after a rotation in the opposite direction.
-  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\nface = \"down\"\n"));
+  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\nfacing = \"down\"\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
 }
 
@@ -100,7 +100,7 @@ TEST(MeshKeys, WrongKeysAreRefused) {
   refused("weld_mm = -1\n", "d.toml:3: part.weld_mm");
   refused("weld_mm = 2\n", "d.toml:3: part.weld_mm");
   refused("chord_mm = 0.1\n", "d.toml:3: part.chord_mm");
-  refused("face = \"top\"\n", "d.toml:3: part.face");
+  refused("facing = \"top\"\n", "d.toml:3: part.facing");
   refused("rotate_deg = [0, 0, 400]\n", "d.toml:3: part.rotate_deg");
 }
 
@@ -108,8 +108,8 @@ double volume_of(const std::string& obj) {
   return geometry::volume_mm3(geometry::boundary_of(geometry::welded(geometry::parse_obj(obj, "a.obj"), 0.0)));
 }
 
-/// A prism over an L-shaped polygon of area 3 and height 2, with negative numbers, texture coordinates, a continued line
-/// and duplicate vertices.
+/// A prism over an L-shaped polygon of area 3 and height 2, with negative numbers, texture coordinates, a continued
+/// line and duplicate vertices.
 TEST(ObjFile, ConcavePolygonsAreDivided) {
   const std::string base = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
   const std::string top = "v 0 0 2\nv 2 0 2\nv 2 1 2\nv 1 1 2\nv 1 2 2\nv 0 2 2\n";
@@ -118,14 +118,12 @@ TEST(ObjFile, ConcavePolygonsAreDivided) {
   const std::string text = "# L\nmtllib a.mtl\no L\n" + base + top + "vn 0 0 1\ng back\nusemtl b\nf 6 5 4 3 2 1\n" +
                            "s off\nf 7//1 8//1 9//1 10//1 11//1 12//1\n" + sides;
   EXPECT_NEAR(volume_of(text), 6.0, 1e-14);
-  EXPECT_TRUE(geometry::is_closed_manifold(
-      geometry::boundary_of(geometry::welded(geometry::parse_obj(text, "a.obj"), 0.0))));
+  EXPECT_TRUE(
+      geometry::is_closed_manifold(geometry::boundary_of(geometry::welded(geometry::parse_obj(text, "a.obj"), 0.0))));
 }
 
 TEST(ObjFile, FaultsAreNamedWithTheirLine) {
-  const auto refused = [](const std::string& text) {
-    return refusal_of([&] { geometry::parse_obj(text, "a.obj"); });
-  };
+  const auto refused = [](const std::string& text) { return refusal_of([&] { geometry::parse_obj(text, "a.obj"); }); };
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   expect_refusals(refused, {{"", "a.obj"},
                             {"hello\n", "a.obj:1"},

@@ -18,7 +18,8 @@ const std::string kPrisms =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nx_length_mm = 2\n"
     "y_length_mm = 2\n[body]\nthickness_mm = 1\nrefractive_index = 1.4917\n";
 const std::string kCubes =
-    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 3\n[array]\narrangement = \"single\"\n[body]\nthickness_mm = 1\n"
+    "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 3\n[array]\narrangement = \"single\"\n[body]\nthickness_mm = "
+    "1\n"
     "refractive_index = 1.4917\n[surface]\ndihedral_error_arcmin = [1, -0.5, 2]\n";
 const std::string kSolid = "[part]\nsolid = \"part.step\"\n" + kBody;
 
@@ -28,8 +29,9 @@ std::string in(const TemporaryFolder& folder, const std::string& name) {
 
 std::vector<double> rre_of(const TemporaryFolder& folder, const std::string& design) {
   std::vector<double> values;
-  const Json result = retrace_json(folder, {"rre", design, "--engine", "exact", "--cutoff", "1e-10", "--incidence=0,12,25",
-                                            "--set", "detector.acceptance_half_angle_deg=[0.5, 3]"});
+  const Json result =
+      retrace_json(folder, {"rre", design, "--engine", "exact", "--cutoff", "1e-10", "--incidence=0,12,25", "--set",
+                            "detector.acceptance_half_angle_deg=[0.5, 3]"});
   for (const Json& point : result.at("points")) values.push_back(point.at("rre"));
   return values;
 }
@@ -133,9 +135,10 @@ TEST(SolidPart, UnitsAndRotationsAreThoseOfTheFileAndTheDesign) {
   EXPECT_NEAR(upright.at("upper_mm").at(2).get<double>(), 2.0, 1e-12);
   const Json turned = measures({"--set", "part.rotate_deg=[90, 0, 90]"});
   // A rotation about x exchanges y and z; the rotation about z then exchanges x and y.
-  for (const auto& [axis, length] : {std::pair(0, 2.0), std::pair(1, 4.0), std::pair(2, 3.0)})
-    EXPECT_NEAR(turned.at("upper_mm").at(axis).get<double>() - turned.at("lower_mm").at(axis).get<double>(), length, 1e-12);
-  const Json down = measures({"--set", "part.face=\"down\""});
+  for (const auto& [axis, length] : {std::pair(0U, 2.0), std::pair(1U, 4.0), std::pair(2U, 3.0)})
+    EXPECT_NEAR(turned.at("upper_mm").at(axis).get<double>() - turned.at("lower_mm").at(axis).get<double>(), length,
+                1e-12);
+  const Json down = measures({"--set", "part.facing=\"down\""});
   EXPECT_NEAR(down.at("upper_mm").at(2).get<double>(), 0.0, 1e-12);
   EXPECT_NEAR(down.at("lower_mm").at(1).get<double>(), -3.0, 1e-12);
 }
@@ -200,7 +203,7 @@ TEST(SolidPart, WrongFilesAndKeysAreRefused) {
   refused(solid + "chord_mm = 0\n", "d.toml:3: part.chord_mm");
   refused(solid + "rotate_deg = [1, 2]\n", "d.toml:3: part.rotate_deg");
   refused(solid + "rotate_deg = 90\n", "d.toml:3: part.rotate_deg");
-  refused(solid + "face = \"left\"\n", "d.toml:3: part.face");
+  refused(solid + "facing = \"left\"\n", "d.toml:3: part.facing");
   refused(solid + "[array]\nx_length_mm = 1\n", "d.toml:3: array");
   refused(solid + "[surface]\nroot_radius_um = 1\n", "d.toml:4: surface.root_radius_um");
   refused("rotate_deg = [0, 0, 90]\nplate_mm = [1, 1]\n", "d.toml:2: part.rotate_deg");

@@ -41,8 +41,8 @@ StepFindings read_step(const std::string& file) {
   found.solids = count(shape, TopAbs_SOLID);
   found.shells = count(shape, TopAbs_SHELL);
   found.faces = count(shape, TopAbs_FACE);
-  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next()) switch (
-        BRepAdaptor_Surface(TopoDS::Face(at.Current())).GetType()) {
+  for (TopExp_Explorer at(shape, TopAbs_FACE); at.More(); at.Next())
+    switch (BRepAdaptor_Surface(TopoDS::Face(at.Current())).GetType()) {
       case GeomAbs_Plane: ++found.planes; break;
       case GeomAbs_Cylinder: ++found.cylinders; break;
       case GeomAbs_Sphere: ++found.spheres; break;

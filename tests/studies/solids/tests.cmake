@@ -13,9 +13,9 @@ endif()
 # These tests make STEP files with OpenCASCADE.
 if(RETRACE_WITH_OPENCASCADE)
   retrace_test(solid_tests
-    SOURCES studies/solids/solid_command_test.cpp studies/solids/mesh_keys_test.cpp studies/solids/step_reader.cpp
-            studies/solids/step_writer.cpp studies/inspect/tool_report_test.cpp app/program.cpp support/refusals.cpp
-    LIBRARIES retrace::core retrace::geometry_io retrace::inspect nlohmann_json::nlohmann_json RetraceOpenCASCADE TKShHealing
+    SOURCES app/program.cpp support/refusals.cpp studies/solids/solid_command_test.cpp studies/solids/mesh_keys_test.cpp
+            studies/solids/step_reader.cpp studies/solids/step_writer.cpp studies/inspect/tool_report_test.cpp
+    LIBRARIES retrace::core retrace::geometry_io retrace::inspect retrace::rre nlohmann_json::nlohmann_json RetraceOpenCASCADE TKShHealing
               TKPrim TKBO)
   add_dependencies(solid_tests retrace)
 endif()
