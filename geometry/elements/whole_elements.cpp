@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "geometry/elements/array_sheet.h"
-#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/substrate_checks.h"
 
 namespace retrace::geometry {

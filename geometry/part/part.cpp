@@ -56,8 +56,8 @@ void add_surface(Part& part, const FacetPlanes* planes, const Vec2& origin_mm, d
 
 /// Returns true if the back surface has the nominal heights.
 bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
-  return planes == nullptr && !spec.substrate && !std::holds_alternative<RuledCells>(spec.element) && !(spec.random_tilts.sigma_arcmin > 0.0) && spec.edges.is_sharp() &&
-         spec.scratches.empty();
+  return planes == nullptr && !spec.substrate && !std::holds_alternative<RuledCells>(spec.element) &&
+         !(spec.random_tilts.sigma_arcmin > 0.0) && spec.edges.is_sharp() && spec.scratches.empty();
 }
 
 /// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of those
