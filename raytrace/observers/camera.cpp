@@ -114,7 +114,7 @@ struct CameraTracer::Impl {
   struct GuideTraining;
   std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel, GuideTraining* training = nullptr,
                                   std::vector<PixelMoments>* moments = nullptr) const;
-  std::optional<CameraPass> trace_and_choose_points(const Cancellation* cancel);
+  bool choose_points(const Cancellation* cancel);
   std::optional<CameraPass> trace_and_learn(std::uint32_t pass, const Cancellation* cancel);
   void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
@@ -139,7 +139,7 @@ struct CameraTracer::Impl {
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
   std::vector<float> levels;        ///< indexed by pixel: typical luminance, see GuideTraining::level_of()
   PixelPoints points;               ///< number of points of each pixel in a pass
-  bool has_chosen_points = false;   ///< true if training passes and pass 0 have determined `points`
+  bool has_chosen_points = false;   ///< true if training passes have determined `points`
 };
 
 /// Training samples for a PixelGuide, collected during one pass.
@@ -503,21 +503,15 @@ std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t numb
   return result;
 }
 
-/// Traces pass 0 after training passes. The noise of the training passes determines the number of points of each pixel
-/// in pass 0. The noise of all these passes determines `points`, the numbers for the other passes. Returns nothing if
-/// tracing was cancelled.
-std::optional<CameraPass> CameraTracer::Impl::trace_and_choose_points(const Cancellation* cancel) {
+/// Traces training passes and determines the number of points of each pixel from the noise of these passes. Returns
+/// false if tracing was cancelled.
+bool CameraTracer::Impl::choose_points(const Cancellation* cancel) {
   std::vector<PixelMoments> moments(scene.view.columns * scene.view.rows);
-  has_chosen_points = false;
-  points = PixelPoints(moments.size(), kPointsPerPass);
   for (std::uint32_t k = 1; k <= kTrainingPassesOfPoints; ++k)
-    if (!trace(kTrainingPass - k, cancel, nullptr, &moments)) return std::nullopt;
-  points = PixelPoints(moments, scene.view.columns, kPointsPerPass);
-  std::optional<CameraPass> result = trace(0, cancel, nullptr, &moments);
-  if (!result) return std::nullopt;
-  points = PixelPoints(moments, scene.view.columns, kPointsPerPass);
+    if (!trace(kTrainingPass - k, cancel, nullptr, &moments)) return false;
+  points = PixelPoints(moments, kTrainingPassesOfPoints * kPointsPerPass, scene.view.columns, kPointsPerPass);
   has_chosen_points = true;
-  return result;
+  return true;
 }
 
 CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light,
@@ -544,8 +538,7 @@ CameraImage CameraTracer::empty_image() const {
 std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancellation* cancel) const {
   Impl& h = *impl_;
   if (!h.cells) {
-    if (number == 0) return h.trace_and_choose_points(cancel);
-    if (!h.has_chosen_points && !h.trace_and_choose_points(cancel)) return std::nullopt;
+    if (!h.has_chosen_points && !h.choose_points(cancel)) return std::nullopt;
     return h.trace(number, cancel);
   }
   if (number == 0 && h.has_learnt_all) {

@@ -157,8 +157,7 @@ class CameraTracer {
   /// With the cell engine, a PixelGuide selects half of the points of a pixel if this reduces the noise. The first call
   /// trains the guide with pass 0 and with a training pass that is not part of the picture. With Embree, noisy pixels
   /// have more points (PixelPoints). Two training passes, which are not part of the picture, determine the numbers of
-  /// points of pass 0. The training passes and pass 0 together determine the numbers of all other passes. The first
-  /// call therefore traces pass 0 as well.
+  /// points.
   /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;

@@ -6,13 +6,11 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of neighbouring pixels on each side that are included in the mean variance around a pixel.
+// Number of neighbouring pixels on each side that are included in the mean variance of a pixel. The training samples of
+// a single pixel are too few.
 constexpr std::size_t kAveragedPixels = 2;
-// Number of samples of a pixel at which the variance of these samples and the mean variance around the pixel have equal
-// weights. With fewer samples, the variance of a single pixel is uncertain.
-constexpr double kKnownSamples = 4.0;
 // Ratio of the points for noisy pixels to the evenly distributed points of a pass.
-constexpr double kAdditionalPoints = 1.1;
+constexpr double kAdditionalPoints = 1.7;
 // Exponent e of the standard deviation s: the number of additional points of a pixel is proportional to s^e. The noise
 // of a picture is the sum of the standard errors s / sqrt(N) of its pixels. For a given total number of points, the
 // noise is minimal for e = 2/3.
@@ -22,14 +20,15 @@ constexpr double kMaxRatio = 64.0;
 // If additional points reduce the variance by less than this factor, all pixels have the same number of points.
 constexpr double kMinGain = 2.0;
 
-double variance_of(const PixelMoments& m) {
-  return std::max(0.0, m.squares - m.sum * m.sum / m.count) / (m.count - 1.0);
-}
-
-/// Returns the standard deviation of a single sample for each pixel. The variance of the pixel's own samples is
-/// combined with the mean variance of the neighbouring pixels.
-std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::size_t columns) {
+/// Returns the standard deviation of a single sample for each pixel. The variance is averaged over the neighbouring
+/// pixels.
+std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std::uint32_t samples,
+                                  std::size_t columns) {
   const std::size_t rows = moments.size() / columns;
+  const auto variance = [&](std::size_t pixel) {
+    const PixelMoments& m = moments[pixel];
+    return std::max(0.0, m.squares - m.sum * m.sum / samples) / (samples - 1.0);
+  };
   const auto first = [](std::size_t at) { return at - std::min(at, kAveragedPixels); };
   std::vector<double> deviations;
   deviations.reserve(moments.size());
@@ -39,21 +38,19 @@ std::vector<double> deviations_of(const std::vector<PixelMoments>& moments, std:
       const std::size_t last_column = std::min(column + kAveragedPixels, columns - 1);
       double sum = 0.0;
       for (std::size_t r = first(row); r <= last_row; ++r)
-        for (std::size_t c = first(column); c <= last_column; ++c) sum += variance_of(moments[r * columns + c]);
+        for (std::size_t c = first(column); c <= last_column; ++c) sum += variance(r * columns + c);
       const std::size_t count = (last_row - first(row) + 1) * (last_column - first(column) + 1);
-      const double mean = sum / static_cast<double>(count);
-      const PixelMoments& own = moments[row * columns + column];
-      deviations.push_back(
-          std::sqrt((own.count * variance_of(own) + kKnownSamples * mean) / (own.count + kKnownSamples)));
+      deviations.push_back(std::sqrt(sum / static_cast<double>(count)));
     }
   return deviations;
 }
 
 }  // namespace
 
-PixelPoints::PixelPoints(const std::vector<PixelMoments>& moments, std::size_t columns, std::uint32_t min_points)
+PixelPoints::PixelPoints(const std::vector<PixelMoments>& moments, std::uint32_t samples, std::size_t columns,
+                         std::uint32_t min_points)
     : PixelPoints(moments.size(), min_points) {
-  const std::vector<double> deviations = deviations_of(moments, columns);
+  const std::vector<double> deviations = deviations_of(moments, samples, columns);
   double sum = 0.0;
   double squares = 0.0;
   double wanted = 0.0;

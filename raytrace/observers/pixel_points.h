@@ -8,16 +8,14 @@
 
 namespace retrace::raytrace {
 
-/// Number of paths through a pixel, and the sum and the sum of squares of their luminances, in cd/m^2.
+/// Sum and sum of squares of the luminances of paths through a pixel, in cd/m^2.
 struct PixelMoments {
   double sum = 0.0;
   double squares = 0.0;
-  std::uint32_t count = 0;
 
   void add(double luminance) {
     sum += luminance;
     squares += luminance * luminance;
-    ++count;
   }
 };
 
@@ -33,8 +31,10 @@ class PixelPoints {
 
   /// Determines the number of points of each pixel from training samples. Each number is `min_points` times a power of
   /// two. If the variance at equal cost decreases by less than a factor of two, every pixel has `min_points` points.
-  /// \param moments moments of the training samples, row by row; each pixel has at least two samples
-  PixelPoints(const std::vector<PixelMoments>& moments, std::size_t columns, std::uint32_t min_points);
+  /// \param moments moments of the training samples, row by row
+  /// \param samples number of training samples per pixel; >= 2
+  PixelPoints(const std::vector<PixelMoments>& moments, std::uint32_t samples, std::size_t columns,
+              std::uint32_t min_points);
 
   std::uint32_t operator[](std::size_t pixel) const { return points_[pixel]; }
   /// Returns the number of points, summed over all pixels.
