@@ -7,7 +7,7 @@ The script needs an idle machine with two cores for wall times. It takes less th
 if a user pressed Ctrl-C. A first answer is the first line that a command prints and that is neither a note nor a warning.
 
 Options:
-    --csv FILE      also writes the times as a table, for --before of a later run
+    --csv FILE      also writes the times as a table, for --before of a later run. With --only, the other rows of the file are kept
     --before FILE   times of an earlier program; the default is benchmarks/user_commands_before.csv
     --only WORD     runs only the rows whose names contain the word
     --limit-s S     time after which a command is interrupted, in s; on a busy machine, give more than the default of 45
@@ -259,7 +259,13 @@ def measured(program, row, limit_s):
             print(f"exit code {one.code}: {' '.join(command)}", file=sys.stderr)
     return {"name": row.name, "commands": len(runs), "processor_s": f"{sum(r.processor_s for r in runs):.2f}",
             "slowest_processor_s": f"{slowest.processor_s:.2f}", "slowest_wall_s": f"{slowest.wall_s:.2f}",
-            "first_answer_s": "" if slowest.first_s is None else f"{slowest.first_s:.2f}", "is_cut_off": int(slowest.is_cut_off)}
+            "first_answer_s": "" if slowest.first_s is None else f"{slowest.first_s:.2f}", "is_cut_off": "yes" if slowest.is_cut_off else ""}
+
+
+def time_text(record):
+    """Returns the processor time of an earlier record. The mark `>` means that the command was interrupted."""
+    is_cut_off = record.get("is_cut_off") or "interrupted" in record.get("source", "")
+    return f"{'> ' if is_cut_off else ''}{float(record['processor_s']):.3g} s"
 
 
 def table(records, before):
@@ -333,13 +339,18 @@ def main():
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
     with open(options.before, newline="", encoding="utf-8") as file:
-        before = {record["name"]: f"{record['processor_s']} s" for record in csv.DictReader(file)}
+        before = {record["name"]: time_text(record) for record in csv.DictReader(file)}
+    known = {}
+    if options.only and options.csv and pathlib.Path(options.csv).exists():
+        with open(options.csv, newline="", encoding="utf-8") as file:
+            known = {record["name"]: record for record in csv.DictReader(file)}
     records = []
     for row in rows():
-        if options.only not in row.name:
-            continue
-        records.append(measured(program, row, options.limit_s))
-        print(" ".join(str(value) for value in records[-1].values()), file=sys.stderr, flush=True)
+        if options.only in row.name:
+            records.append(measured(program, row, options.limit_s))
+            print(" ".join(str(value) for value in records[-1].values()), file=sys.stderr, flush=True)
+        elif row.name in known:
+            records.append(known[row.name])
     if options.csv:
         with open(options.csv, "w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, records[0].keys())

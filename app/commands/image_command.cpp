@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/first_answer.h"
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
@@ -148,10 +149,22 @@ std::vector<std::string> files_of(const std::vector<design::Design>& designs, co
   return files;
 }
 
+/// Computes a coarse picture without diffraction. Returns lines about it, or an empty text if the computation is
+/// cancelled.
+std::string preliminary_picture(const design::Design& design, CameraRequest request, const Cancellation* cancel) {
+  request.diffraction = false;
+  request.passes = 2;
+  request.columns = 100;
+  request.rows = 75;
+  request.background.clear();
+  const studies::CameraResult result = studies::CameraStudy(design, request).run(nullptr, cancel);
+  return result.complete ? "preliminary, without diffraction: " + studies::camera_table(result) : std::string();
+}
+
 /// Computes the camera picture and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode photograph(const ImageOptions& options, const CommonOptions& common, compute::MpiSession* session) {
-  design::Design design = design::read_design(options.designs.front(), common.overrides);
+  const design::Design design = design::read_design(options.designs.front(), common.overrides);
   studies::CameraResult result;
   const auto request = request_of<CameraRequest>(options.fields, common);
   const std::vector<std::string> inputs = files_of({design}, request);
@@ -163,7 +176,7 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, co
   add(kCameraPng, [](const auto& r) { return report::camera_png(r); });
   if (options.false_colour)
     add("false_colour.png", [](const auto& r) { return report::render_png(report::false_colour_plot(r)); });
-  const studies::CameraStudy study(std::move(design), request);
+  const studies::CameraStudy study(design, request);
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
@@ -171,6 +184,9 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, co
     ProgressBar bar({"rendering", what_shortens(request)}, common);
     Preview preview(common, bar);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      const FirstAnswer first(bar, cancel, [&](std::optional<double>, const Cancellation* stop) {
+        return preliminary_picture(design, request, stop);
+      });
       result = study.run(
           &bar, cancel, [&](const studies::CameraResult& unfinished) { preview(unfinished); },
           distribute_among(session, kPassesAtATime, cancel));
