@@ -295,7 +295,7 @@ TEST_F(StepFaces, KeysAreChecked) {
   write_step(folder_, "lens.step", "w.sphere(s)");
   const std::string start = kCubes + "[entrance_surface]\n";
   expect_refusals([&](const std::string& keys) { return refused(start + keys + kBody); },
-                  {{"kind = \"step\"\n", "d.toml:9: entrance_surface.file"},
+                  {{"kind = \"step\"\n", "d.toml:8: entrance_surface.file"},
                    {"kind = \"step\"\nfile = \"no.step\"\n", "d.toml:10: entrance_surface.file"},
                    {step_keys("sew_mm = 0\n"), "d.toml:11: entrance_surface.sew_mm"},
                    {step_keys("sew_mm = 2\n"), "d.toml:11: entrance_surface.sew_mm"},
