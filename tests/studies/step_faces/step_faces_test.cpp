@@ -273,10 +273,10 @@ TEST_F(StepFaces, PartMustBeCovered) {
   write_step(folder_, "lens.step", "w.sphere(s)");
   const std::string wide =
       "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 3\n[array]\nx_length_mm = 41\ny_length_mm = 20\n";
-  EXPECT_EQ(refused(wide + "[entrance_surface]\n" + step_keys() + kBody), "d.toml:8: entrance_surface.file");
-  EXPECT_EQ(refused(wide + "[substrate]\n" + step_keys() + kBody), "d.toml:8: substrate.file");
+  EXPECT_EQ(refused(wide + "[entrance_surface]\n" + step_keys() + kBody), "d.toml:9: entrance_surface.file");
+  EXPECT_EQ(refused(wide + "[substrate]\n" + step_keys() + kBody), "d.toml:9: substrate.file");
   EXPECT_EQ(refused(kCubes + "[entrance_surface]\n" + step_keys("origin_mm = [15, 0, 0]\n") + kBody),
-            "d.toml:9: entrance_surface.file");
+            "d.toml:10: entrance_surface.file");
 }
 
 TEST_F(StepFaces, DocumentsAreReadAgain) {
@@ -296,16 +296,16 @@ TEST_F(StepFaces, KeysAreChecked) {
   const std::string start = kCubes + "[entrance_surface]\n";
   expect_refusals([&](const std::string& keys) { return refused(start + keys + kBody); },
                   {{"kind = \"step\"\n", "d.toml:8: entrance_surface.file"},
-                   {"kind = \"step\"\nfile = \"no.step\"\n", "d.toml:9: entrance_surface.file"},
-                   {step_keys("sew_mm = 0\n"), "d.toml:10: entrance_surface.sew_mm"},
-                   {step_keys("sew_mm = 2\n"), "d.toml:10: entrance_surface.sew_mm"},
-                   {step_keys("face = 3\n"), "d.toml:10: entrance_surface.face"},
-                   {step_keys("face = \"none\"\n"), "d.toml:9: entrance_surface.file"},
-                   {step_keys("origin_mm = [0, 0]\n"), "d.toml:10: entrance_surface.origin_mm"},
-                   {step_keys("rotation_deg = 90\n"), "d.toml:10: entrance_surface.rotation_deg"},
-                   {step_keys("rotation_deg = [0, 90, 0]\n"), "d.toml:9: entrance_surface.file"},
-                   {step_keys("radius_mm = 100\n"), "d.toml:10: entrance_surface.radius_mm"},
-                   {"kind = \"sphere\"\nradius_mm = 100\nfile = \"lens.step\"\n", "d.toml:10: entrance_surface.file"}});
+                   {"kind = \"step\"\nfile = \"no.step\"\n", "d.toml:10: entrance_surface.file"},
+                   {step_keys("sew_mm = 0\n"), "d.toml:11: entrance_surface.sew_mm"},
+                   {step_keys("sew_mm = 2\n"), "d.toml:11: entrance_surface.sew_mm"},
+                   {step_keys("face = 3\n"), "d.toml:11: entrance_surface.face"},
+                   {step_keys("face = \"none\"\n"), "d.toml:10: entrance_surface.file"},
+                   {step_keys("origin_mm = [0, 0]\n"), "d.toml:11: entrance_surface.origin_mm"},
+                   {step_keys("rotation_deg = 90\n"), "d.toml:11: entrance_surface.rotation_deg"},
+                   {step_keys("rotation_deg = [0, 90, 0]\n"), "d.toml:10: entrance_surface.file"},
+                   {step_keys("radius_mm = 100\n"), "d.toml:11: entrance_surface.radius_mm"},
+                   {"kind = \"sphere\"\nradius_mm = 100\nfile = \"lens.step\"\n", "d.toml:11: entrance_surface.file"}});
 }
 
 }  // namespace
