@@ -37,13 +37,13 @@ class SolidMessageWriter {
 /// Reads a result. All functions throw std::runtime_error if the result is damaged.
 class SolidMessageReader {
  public:
-  explicit SolidMessageReader(std::string_view text) : rest_(text) {}
+  explicit SolidMessageReader(std::string_view text) : remaining_(text) {}
 
   double number() {
     double value = 0.0;
-    if (rest_.size() < sizeof value) fail();
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
+    if (remaining_.size() < sizeof value) fail();
+    std::memcpy(&value, remaining_.data(), sizeof value);
+    remaining_.remove_prefix(sizeof value);
     return value;
   }
   Vec3 point() {
@@ -58,12 +58,12 @@ class SolidMessageReader {
     return static_cast<std::size_t>(value);
   }
   /// Reads the length of a list whose items have at least one number.
-  std::size_t count() { return index(rest_.size() / sizeof(double) + 1); }
-  std::string_view rest() const { return rest_; }
+  std::size_t count() { return index(remaining_.size() / sizeof(double) + 1); }
+  std::string_view remaining() const { return remaining_; }
   [[noreturn]] static void fail() { throw std::runtime_error("the result is damaged"); }
 
  private:
-  std::string_view rest_;
+  std::string_view remaining_;
 };
 
 }  // namespace retrace::geometry

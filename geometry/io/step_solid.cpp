@@ -58,7 +58,7 @@ SolidMesh read_step_solid(const std::filesystem::path& file, double chord_mm) {
         output_of_reader(kSolidReaderName, {file.string(), shortest(chord_mm)}, "libocct-data-exchange-7.6");
     SolidMessageReader reader(result);
     if (reader.index(2) == static_cast<std::size_t>(SolidResult::refused))
-      throw InputError(printable(std::string(reader.rest()), kMaxReasonBytes));
+      throw InputError(printable(std::string(reader.remaining()), kMaxReasonBytes));
     return solid_of_message(reader);
   } catch (const InputError& error) {
     throw InputError({file.string(), 0, ""}, error.what());
