@@ -164,7 +164,7 @@ OrientedMesh oriented_solid(const Design& design, const MeshKeys& keys, Warnings
   }
   for (std::optional<geometry::FacetPlane>& plane : solid.planes)
     if (plane) plane->normal = rotation * plane->normal;
-  const double apart_mm = geometry::settle_on_planes(solid, kMaxSettling_mm);
+  const double apart_mm = geometry::snap_to_face_planes(solid, kMaxSettling_mm);
   if (const std::size_t curved = solid.curved_faces(); curved > 0)
     tell(warnings, design, "curved_faces",
          fmt::format("{} curved face{} of the solid {} traced as triangles within {} mm of the exact surface", curved,

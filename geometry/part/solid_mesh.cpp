@@ -33,7 +33,7 @@ std::size_t SolidMesh::curved_faces() const {
       std::count_if(planes.begin(), planes.end(), [](const auto& plane) { return !plane.has_value(); }));
 }
 
-double settle_on_planes(SolidMesh& solid, double max_move_mm) {
+double snap_to_face_planes(SolidMesh& solid, double max_move_mm) {
   orient_planes(solid);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> faces_of_vertices;
   for (std::size_t t = 0; t < solid.mesh.triangles.size(); ++t)

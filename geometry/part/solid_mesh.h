@@ -25,6 +25,6 @@ struct SolidMesh {
 /// Moves each vertex onto the planes of its plane faces. Orients the planes such that their normals agree with their
 /// triangles. Vertices that are farther from a plane than `max_move_mm` are not moved.
 /// \return maximum distance between a vertex and a plane of its faces after the movement
-double settle_on_planes(SolidMesh& solid, double max_move_mm);
+double snap_to_face_planes(SolidMesh& solid, double max_move_mm);
 
 }  // namespace retrace::geometry
