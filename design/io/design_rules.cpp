@@ -472,7 +472,7 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kGrooveKeys,
                   "The grooves of ruled cells must leave cells, and their bottoms must be narrower than the spacing. "
                   "The base angles add up to 180 degrees. In an infinite array, the grooves must have a common period "
-                  "along x and y with at most 20000 cells.",
+                  "along x and y with at most 1000 cells.",
                   check_by<check_grooves>},
     schema::Check{
         kRuledKeys,

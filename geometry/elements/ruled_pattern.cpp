@@ -95,6 +95,7 @@ class Ruling {
   const GrooveSet& set() const { return set_; }
   const Vec2& normal() const { return normal_; }
   double period_mm() const { return period_mm_; }
+  double grooves_per_mm() const { return static_cast<double>(grooves_) / period_mm_; }
   double widest_mm() const { return *std::max_element(set_.spacing_mm.begin(), set_.spacing_mm.end()); }
   double narrowest_mm() const { return *std::min_element(set_.spacing_mm.begin(), set_.spacing_mm.end()); }
   double flattest_cot() const {
@@ -141,6 +142,17 @@ class Ruling {
   std::vector<VGroove> own_;
   double period_mm_ = 0.0;
 };
+
+/// Returns true if a line divides a polygon.
+bool crosses(const Polygon& polygon, const Vec2& normal, double position_mm, double tolerance_mm) {
+  bool is_below = false, is_above = false;
+  for (const Vec2& p : polygon) {
+    const double at = normal.dot(p) - position_mm;
+    is_below = is_below || at < -tolerance_mm;
+    is_above = is_above || at > tolerance_mm;
+  }
+  return is_below && is_above;
+}
 
 /// Portions of a convex polygon on both sides of a line. Vertices within the tolerance of the line are on it.
 struct SplitPolygon {
@@ -207,7 +219,11 @@ class CellBuilder {
       const std::int64_t last = ruling.last_before(high);
       for (std::int64_t number = ruling.last_before(low); number <= last; ++number) {
         std::vector<Polygon> finer;
-        for (const Polygon& cell : cells) {
+        for (Polygon& cell : cells) {
+          if (!crosses(cell, ruling.normal(), ruling.position(number), tolerance_mm_)) {
+            finer.push_back(std::move(cell));
+            continue;
+          }
           SplitPolygon parts = split(cell, ruling.normal(), ruling.position(number), tolerance_mm_);
           if (!parts.below.empty()) finer.push_back(std::move(parts.below));
           if (!parts.above.empty()) finer.push_back(std::move(parts.above));
@@ -406,6 +422,17 @@ std::optional<double> period_along(const std::vector<Ruling>& rulings, Eigen::In
   return std::nullopt;
 }
 
+/// Returns an upper bound of the number of cells per area: the number of crossings of two lines. A pattern
+/// of lines has one cell for each crossing, and fewer cells if more than two lines pass through one point.
+double cells_per_mm2(const std::vector<Ruling>& rulings) {
+  double crossings = 0.0;
+  for (std::size_t a = 0; a < rulings.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      crossings += std::abs(plane::cross(rulings[a].normal(), rulings[b].normal())) * rulings[a].grooves_per_mm() *
+                   rulings[b].grooves_per_mm();
+  return crossings;
+}
+
 /// Returns the cells of one period, each of them one time.
 std::vector<Polygon> outlines_of_period(const CellBuilder& builder, const Vec2& period_mm) {
   // A cell belongs to the period that contains its centroid. The origin is shifted, so that no centroid of a regular
@@ -504,17 +531,8 @@ RuledPattern ruled_pattern(std::vector<GrooveSet> sets, std::optional<double> de
   const CellBuilder builder(pattern.sets, depth_mm);
   const auto x_mm = period_along(builder.rulings(), 0);
   const auto y_mm = period_along(builder.rulings(), 1);
-  double cells_of_period = INFINITY;
-  if (x_mm && y_mm) {
-    double lines = 0.0;
-    for (const Ruling& ruling : builder.rulings()) {
-      const double mean = ruling.period_mm() / static_cast<double>(std::lcm(ruling.set().spacing_mm.size(),
-                                                                            ruling.set().half_angles_deg.size()));
-      lines += 1.0 / mean;
-    }
-    cells_of_period = 0.5 * lines * lines * *x_mm * *y_mm;
-    if (cells_of_period <= static_cast<double>(kMaxRuledCells)) pattern.period_mm = Vec2(*x_mm, *y_mm);
-  }
+  if (x_mm && y_mm && cells_per_mm2(builder.rulings()) * *x_mm * *y_mm <= static_cast<double>(kMaxCellsOfPeriod))
+    pattern.period_mm = Vec2(*x_mm, *y_mm);
   if (pattern.period_mm) {
     pattern.cells = cells_over(builder, outlines_of_period(builder, *pattern.period_mm));
   } else {

@@ -60,8 +60,9 @@ std::vector<GrooveSet> perpendicular_groove_sets(const std::array<double, 3>& ba
 ///     more parallel to the entrance face; negative: the dihedral edge towards the first angle is
 std::array<double, 3> base_angles_of_cant(double cant_deg);
 
-/// Largest number of cells of a pattern that are computed.
+/// Largest number of cells of a finite part without a period, and of a period. Longer periods count as no period.
 inline constexpr std::size_t kMaxRuledCells = 20000;
+inline constexpr std::size_t kMaxCellsOfPeriod = 1000;
 
 /// Computes the period and the cells of a pattern.
 /// \pre the members of the sets are in their ranges
