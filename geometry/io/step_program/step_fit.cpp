@@ -170,8 +170,9 @@ class FaceHeights {
         samples_.push_back(*p);
       }
     if (samples_.empty())
-      refuse_step("must have a face that is larger than 0 with one height above each point, but has none: choose "
-                  "another face, or set rotation_deg so that +z points to the light");
+      refuse_step(
+          "must have a face that is larger than 0 with one height above each point, but has none: choose "
+          "another face, or set rotation_deg so that +z points to the light");
   }
 
   /// Sorts the samples into square cells in plan.
