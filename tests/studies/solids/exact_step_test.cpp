@@ -165,7 +165,8 @@ TEST(ExactStep, SurfacesThatEndAtTheOutlineAreSplines) {
   const Vec2 centre = bounding_box(hexagon.outline).centre();
   Sag sag;  // defined within 1 mm of the centre; the corners of the bounding box are 1.06 mm away
   sag.formula = parse_formula("0.02 * sqrt(1 - r^2)", {"x", "y", "r"}, {});
-  const EntranceSurface surface(FreeformSurface(sag, std::nullopt, {}, {}), Vec3(centre.x(), centre.y(), kHeightMm), 0.4);
+  const EntranceSurface surface(FreeformSurface(sag, std::nullopt, {}, {}), Vec3(centre.x(), centre.y(), kHeightMm),
+                                0.4);
   const ExactBoundary boundary = exact_boundary(hexagon, surface, std::nullopt, 1e-5);
   EXPECT_LE(boundary.entrance_error_mm, 1e-5);
   EXPECT_EQ(expect_exact_solid(boundary).splines, 1);
