@@ -75,7 +75,8 @@ TEST(SolidPart, HasThePhotometryOfTheDesignThatWasExported) {
     const Outcome outcome = retrace(folder, {"photometry", design, "--standard=r150", "--class=IA", "--colour=white",
                                              "--area-cm2=30", "--engine=exact", "--cutoff=1e-6", "--json=p.json"});
     EXPECT_EQ(outcome.code, 1) << outcome.err;
-    for (const Json& point : folder.json("p.json").at("points")) values.push_back(point.at("value_mcd_per_lx"));
+    const Json result = folder.json("p.json");
+    for (const Json& point : result.at("points")) values.push_back(point.at("value_mcd_per_lx"));
     return values;
   };
   const std::vector<double> expected = points("direct.toml");
