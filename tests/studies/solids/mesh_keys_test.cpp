@@ -59,10 +59,10 @@ TEST(MeshKeys, ObjFilesAndRotationsGiveTheDesign) {
   folder.write("d.toml", mesh_design("part.obj"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
   folder.write("side.obj", on_its_side(folder.read("part.obj")));
-  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [90, 0, 0]\n"));
+  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
   // The entrance face points to -z after a rotation in the opposite direction.
-  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [-90, 0, 0]\nfacing = \"down\"\n"));
+  folder.write("d.toml", mesh_design("side.obj", "rotate_deg = [90, 0, 0]\nfacing = \"down\"\n"));
   EXPECT_NEAR(rre_of(folder, "d.toml"), expected, 1e-6);
 }
 
