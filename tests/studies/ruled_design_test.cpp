@@ -105,8 +105,10 @@ TEST(RuledDesign, CantedPairsReturnLightFromLargeEntranceAnglesInBothPresentatio
   const double upright = r_a(equilateral(), 0.0);
   EXPECT_GT(r_a(pair, 0.0), 2.0 * upright);
   EXPECT_GT(r_a(pair, 90.0), 2.0 * upright);
-  // A rotation by 180 degrees exchanges the cells of a pair.
-  EXPECT_NEAR(r_a(pair, 180.0), r_a(pair, 0.0), 1e-6 * r_a(pair, 0.0));
+  // A rotation by 180 degrees exchanges the cells of a pair. Beams below the cut-off are not followed, and the incident
+  // beam is not divided symmetrically.
+  request.cutoff = 1e-7;
+  EXPECT_NEAR(r_a(pair, 180.0), r_a(pair, 0.0), 1e-7 * r_a(pair, 0.0));
 }
 
 /// Returns the fraction of a triangle that is also in its mirror image about a point. In barycentric coordinates, the
