@@ -478,7 +478,8 @@ struct Capabilities {
   bool entrances = false;
   bool shells = false;
   bool wet_backs = false;
-  bool cell_spreads = true;  ///< false: the study adds the intensities of cells and cannot add their fields
+  bool cell_spreads =
+      true;  ///< true if the study can add the fields of cells; false if it can only add their intensities
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

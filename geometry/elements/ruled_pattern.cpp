@@ -181,8 +181,8 @@ SplitPolygon split(const Polygon& polygon, const Vec2& normal, double position_m
   return parts;
 }
 
-/// Profile of one groove over a cell, which is on one side of the groove. The surface of the groove is the lower
-/// envelope of the planes.
+/// Planes of one groove that are above a cell. The whole cell is on one side of the centre line of the groove. The
+/// surface of the groove is the lower envelope of these planes.
 using CellProfile = std::vector<CellFacet>;
 
 /// Computes the cells of all groove sets.

@@ -17,8 +17,8 @@ using namespace schema;
 
 /// Words of the key `kind`, in the order of the alternatives of SubstrateShape.
 constexpr Words kKinds = {"plane", "cylinder", "sphere", "formula"};
-/// Kinds of substrates in designs. Jobs allow only the kinds in `kKinds`, because they have no entrance surface
-/// and name no STEP files.
+/// Kinds of substrates in designs. A job has no entrance surface and names no STEP files. It therefore allows only
+/// `kKinds`.
 constexpr Words kKindsOfDesign = {"plane", "cylinder", "sphere", "formula", "offset", "step"};
 constexpr Words kAxes = {"x", "y"};
 constexpr Words kElementAxesWords = {"normal", "parallel"};

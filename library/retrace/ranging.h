@@ -33,7 +33,7 @@ struct RangingResult {
   bool complete = true;
   std::string json;          ///< result as JSON of the format retrace.ranging/1
   std::string csv;           ///< table with one line for each point
-  std::string map_csv;       ///< map of the first point as CSV; empty if no light returns
+  std::string map_csv;       ///< map of the far field of the first point, as CSV; empty if no light returns
   std::string cubes_csv;     ///< illuminated cubes of the first point; empty for a single cube
   std::string response_csv;  ///< response of an array to a pulse; empty for continuous light
   std::string shots_csv;     ///< single shots; empty if no shots are requested

@@ -35,9 +35,10 @@ struct RuledReport {
 
 RuledReport report_ruled(const geometry::RuledPattern& pattern);
 
-/// Returns the fraction of a cell's outline, at the height z = 0, through which light enters and meets three different
-/// faces of the cell before it leaves through the outline. Refraction and reflectances are not considered.
-/// \param direction direction of the light inside the part; its z component is negative
+/// Returns the effective fraction of the area that the outline of a cell encloses in the plane z = 0. Light that enters
+/// the effective area meets three different faces of the cell and leaves within the outline. Refraction and
+/// reflectances are not considered. \param direction direction of the light inside the part; its z component is
+/// negative
 double effective_aperture(const geometry::Cell& cell, const geometry::Vec3& direction);
 
 }  // namespace retrace::studies

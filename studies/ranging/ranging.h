@@ -20,7 +20,7 @@
 
 namespace retrace::studies {
 
-/// Cross sections in m2, divided by the polarisation of the returned light. `parallel` is the component with the
+/// Cross sections in m2, separately for each polarisation of the returned light. `parallel` is the component with the
 /// polarisation of the transmitted light, and `crossed` is the component with the orthogonal polarisation. Both are
 /// empty if the transmitted light is unpolarised.
 template <class Value>
@@ -49,8 +49,9 @@ struct RangingPoint {
   /// Cross section of a plane mirror that reflects the whole incident beam to the source. It is 4 pi A^2 /
   /// wavelength^2, where A is the cross-sectional area of the beam. For an array, the sum over all illuminated cubes.
   double mirror_m2 = 0.0;
-  ByPolarisation<double> centre;                             ///< in the direction exactly towards the source
-  std::optional<ByPolarisation<AnnulusStatistics>> annulus;  ///< statistics over the directions of velocity aberration
+  ByPolarisation<double> centre;  ///< in the direction exactly towards the source
+  std::optional<ByPolarisation<AnnulusStatistics>>
+      annulus;                    ///< statistics of the cross section over the annulus of velocity aberration
   double diffracted_power = 0.0;  ///< fraction of the incident power that returns in diffracted beams
   /// Range correction of a single cube, and its usual approximation. Both are empty for arrays.
   std::optional<double> range_correction_mm;
@@ -67,7 +68,7 @@ struct RangingPoint {
 /// Map of the far field of the first point, and cross sections on rings.
 struct RangingMap {
   double half_width_rad = 0.0;
-  std::size_t points = 0;  ///< number of rows, and number of columns
+  std::size_t points = 0;  ///< number of rows, which is also the number of columns
   /// Cross sections in rows, from the bottom row to the top row. Each row goes from left to right.
   std::vector<ByPolarisation<double>> values;
   std::vector<double> ring_rad;            ///< radii of rings around the direction to the source

@@ -129,7 +129,7 @@ TEST(RuledPattern, FacesOfAllFormsArePerpendicular) {
   }
 }
 
-// The half-angle of a face follows from the base angles: sin^2 = cot B cot C.
+// The half-angle h of a face follows from the angles B and C at the ends of its base: sin^2(h) = cot(B) cot(C).
 TEST(RuledPattern, HalfAnglesFollowFromTheBaseTriangle) {
   const std::array<double, 3> base = {50.0, 60.0, 70.0};
   const std::vector<GrooveSet> sets = geometry::perpendicular_groove_sets(base, 0.1);

@@ -237,7 +237,8 @@ class StepContents {
   TopoDS_Shape shape_;
   std::string unit_;
   std::vector<Candidate> candidates_;
-  std::map<const Standard_Transient*, std::vector<std::size_t>> by_shape_;  ///< candidates of each shared shape
+  std::map<const Standard_Transient*, std::vector<std::size_t>>
+      by_shape_;  ///< indices of the candidates that have this shape
 };
 
 std::string lower_case(std::string text) {

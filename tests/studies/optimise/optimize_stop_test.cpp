@@ -111,7 +111,7 @@ TEST(OptimizeStop, WritesThePlotsAndAllDesigns) {
        {"optimum.svg", "optimum.png", "constraints.svg", "constraints.png", "designs.csv", "front.csv", "best.toml"})
     EXPECT_TRUE(fs::exists(folder.path() / "out" / file)) << file;
   const Json json = folder.json("out/optimum.json");
-  // The depth of the prisms is 0.5 mm, so the plate above them can be 2.5 mm thick.
+  // Plate and prisms together may be 3 mm thick. The prisms are 0.5 mm deep, so the plate may be 2.5 mm thick.
   EXPECT_NEAR(json["best"]["body.thickness_mm"].get<double>(), 2.5, 1e-6);
   EXPECT_EQ(json["designs"].size(), json["evaluations"].get<std::size_t>());
 }

@@ -11,7 +11,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// Margin of all comparisons, in mm. It is far above rounding errors, so that omitted moves cannot affect a result.
+/// Margin of the comparisons that decide whether a move is omitted, in mm. It is much larger than rounding errors.
+/// Moves that affect the result are therefore never omitted.
 constexpr double kMarginMm = 1e-9;
 /// Minimum cosine of the angle between a line and the normal of a side, for a side that bounds s. Other sides are
 /// considered parallel to the lines.
