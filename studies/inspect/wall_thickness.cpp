@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "geometry/centroid.h"
 
 namespace retrace::studies {
 namespace {
@@ -105,13 +108,9 @@ Candidates<FacetOfPart> nearest_facets(const Part& part, const Estimate& estimat
   Candidates<FacetOfPart> candidates;
   for_each_facet(part, [&](const geometry::Placement& placement, const geometry::PatchFacet& facet) {
     const BackFacet made = facet_of(part, placement, facet);
-    Vec3 middle = Vec3::Zero();
-    double least = std::numeric_limits<double>::infinity();
-    for (const Vec3& p : made.corners) {
-      least = std::min(least, estimate(p));
-      middle += p / static_cast<double>(made.corners.size());
-    }
-    candidates.add(std::min(least, estimate(middle)), {&placement, &facet});
+    double least = estimate(geometry::centroid(std::span<const Vec3>(made.corners)));
+    for (const Vec3& p : made.corners) least = std::min(least, estimate(p));
+    candidates.add(least, {&placement, &facet});
   });
   return candidates;
 }
@@ -212,8 +211,7 @@ WallThickness wall_under_mesh(const Part& part, const geometry::SurfacePatch& me
       const Vec3& normal = mesh.facets[mesh.triangle_facet[t]].normal;
       const auto to_triangle = [&](const Vec3& p) { return nearest_on_polygon(p, triangle, normal); };
       // A triangle is skipped if it is farther away than the smallest wall found so far.
-      Vec3 middle = Vec3::Zero();
-      for (const Vec3& p : facet.corners) middle += p / static_cast<double>(facet.corners.size());
+      const Vec3 middle = geometry::centroid(std::span<const Vec3>(facet.corners));
       double radius_mm = 0.0;
       for (const Vec3& p : facet.corners) radius_mm = std::max(radius_mm, (p - middle).norm());
       if ((to_triangle(middle) - middle).norm() - radius_mm > least.thickness_mm) continue;

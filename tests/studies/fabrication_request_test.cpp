@@ -121,6 +121,7 @@ TEST(FabricationRequests, JobsOfRuledCellsAreRefused) {
   for (const char* strategy : {"bidirectional", "dmc"}) {
     JobRequest request;
     request.strategy = strategy;
+    request.tool_width_mm = 0.1;
     EXPECT_EQ(refusal_of([&] { make_job(design::parse_design(text, "d.toml", {}), request); }),
               "d.toml:2: element.kind");
   }
