@@ -331,6 +331,11 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   result.face_error = std::max(raytrace::largest_relative_error(result.maps.leaving, kDarkFace),
                                raytrace::largest_relative_error(result.maps.entering, kDarkFace));
   result.angle_error = raytrace::largest_relative_error(result.maps.per_sr, kDarkAngles);
+  if (design_.cell_spread() != nullptr && result.maps.complete && !result.has_diffraction)
+    result.warnings.push_back(
+        {"no_cell_interference", fmt::format("{}: array.depth_spread_nm has no effect, because the far field does not "
+                                             "include diffraction",
+                                             design_.source_name())});
   result.engine = exact ? "exact" : "embree";
   result.complete = result.maps.complete;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
