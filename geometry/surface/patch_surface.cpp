@@ -106,7 +106,7 @@ void PatchSurface::make_slabs() {
       slabs_[static_cast<std::size_t>(y - slab_y_mm_.begin())].push_back({x_at(*y), x_at(*(y + 1)), side.face});
   }
   for (std::vector<SideInSlab>& slab : slabs_)
-    // Of two sides at the same position, the side with a face on its right must be the second one.
+    // If two sides have the same position, the side with a face on its right must be the second one.
     std::sort(slab.begin(), slab.end(), [](const SideInSlab& a, const SideInSlab& b) {
       const double difference = (a.lower_x_mm + a.upper_x_mm) - (b.lower_x_mm + b.upper_x_mm);
       return difference != 0.0 ? difference < 0.0 : a.face < b.face;
