@@ -17,7 +17,7 @@ struct TangentBreak {
   Vec3 at_mm = Vec3::Zero();  ///< position of this maximum in the frame of the file
 };
 
-/// Returns the distance by which patches continue beyond the border of their face.
+/// Returns the distance by which a part may extend beyond the border of the faces.
 /// \param size_mm size of the bounding box of all faces
 inline double step_margin_mm(const Vec2& size_mm) {
   return std::max(1e-3 * size_mm.maxCoeff(), 0.02);

@@ -403,9 +403,9 @@ class TreeMaker {
     return inside;
   }
 
-  /// Returns the sides of the border that are near a cell.
-  std::vector<Side> sides_near(const std::vector<Side>& sides, const GridCell& cell) const {
-    const double reach = cell.half.norm() + 1.5 * margin_mm_;
+  /// Returns the sides of the border whose distance from a cell may be less than `margin_mm`.
+  static std::vector<Side> sides_near(const std::vector<Side>& sides, const GridCell& cell, double margin_mm) {
+    const double reach = cell.half.norm() + 1.5 * margin_mm;
     std::vector<Side> near;
     for (const Side& side : sides) {
       const Vec2 along = side.to - side.from;
@@ -418,8 +418,10 @@ class TreeMaker {
 
   void divide(std::uint32_t node, const GridCell& cell, const std::vector<Side>& sides_around) {
     constexpr double kMinSize = 1.0 / 16384.0;
+    // Beyond the border, the surface may end. Cells near the border must reach it, but cells further away need not.
     constexpr double kMinSizeBeyond = 1.0 / 1024.0;
-    const std::vector<Side> sides = sides_near(sides_around, cell);
+    constexpr double kMinSizeFarBeyond = 1.0 / 64.0;
+    const std::vector<Side> sides = sides_near(sides_around, cell, margin_mm_);
     const bool is_within = is_inside(cell.centre);
     if (sides.empty() && !is_within) return;  // there is no surface
     int axis = cell.half.x() >= cell.half.y() ? 0 : 1;
@@ -430,7 +432,8 @@ class TreeMaker {
                     " polynomials are needed to approximate them within 1 nm and 0.1 arcsec");
       return;
     }
-    if (cell.half.maxCoeff() < kMinSizeBeyond * size_mm_ && !is_within) return;
+    const bool is_near = is_within || !sides_near(sides, cell, step_margin_mm(Vec2::Constant(size_mm_))).empty();
+    if (cell.half.maxCoeff() < (is_near ? kMinSizeBeyond : kMinSizeFarBeyond) * size_mm_ && !is_within) return;
     if (cell.half.minCoeff() < kMinSize * size_mm_) {
       const std::optional<FaceHeight> height = face_.at(cell.centre);
       if (!height) refuse_fold(cell.centre);
@@ -598,7 +601,9 @@ FittedFaces fit_faces(const ChosenFaces& chosen, const StepChoice& choice) {
       if (PatchSurface({PatchTree{}}, {fitted.patches.borders[k]}).covers(centre, 1e-3))
         if (const std::optional<FaceHeight> height = faces[k].at(centre)) fitted.origin_mm.z() = height->z_mm;
   }
-  const double margin_mm = step_margin_mm(fitted.size_mm);
+  // Photometry evaluates the surface over whole elements, which may extend beyond the border of the face.
+  constexpr double kMargin = 0.1;
+  const double margin_mm = kMargin * size_mm;
   std::size_t patches = 0;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     TreeMaker maker(faces[k], fitted.patches.borders[k], fitted.origin_mm, margin_mm, size_mm);
