@@ -107,6 +107,23 @@ TEST_F(StepFaces, GiveThePhotometryOfTheSameFormulas) {
   }
 }
 
+// The light of elements at the border of the part reaches beyond the face, where its surface continues.
+TEST_F(StepFaces, ThatEndAtTheBorderOfThePartGiveTheSamePhotometry) {
+  using namespace studies::photometric_requests;
+  write_step(folder_, "lens.step",
+             "w.face_over(s, w.SPLINE.surface(s, w.LOW, w.HIGH), w.SPLINE, w.rectangle((-9, -7), (9, 7)))");
+  studies::PhotometrySettings request = request_of(points_at({0.33}, 1.0));
+  request.diffraction = true;
+  const auto result_of = [&](const std::string& keys) {
+    const std::string cubes = kCubes + "[surface]\ndihedral_error_arcmin = 2\n[entrance_surface]\n";
+    return studies::photometric_requests::run(read(cubes + keys + kBody), request);
+  };
+  const studies::PhotometryResult of_file = result_of(step_keys());
+  const studies::PhotometryResult of_keys = result_of("kind = \"formula\"\nformula = \"" + kSplineFormula + "\"\n");
+  EXPECT_NEAR(of_file.points[0].r_a, of_keys.points[0].r_a, 1e-3 * of_keys.points[0].r_a);
+  EXPECT_EQ(of_file.warnings.size(), of_keys.warnings.size());
+}
+
 TEST_F(StepFaces, AreWithinANanometreOfTheirClosedForms) {
   const double radius = 150.0;
   write_step(folder_, "lens.step", "w.sphere(s)");
