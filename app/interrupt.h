@@ -30,9 +30,9 @@ class OrderlyInterrupt {
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
   /// Runs a computation that regularly checks whether it should stop. If the computation does not stop within one
-  /// second after the interrupt, the program ends and writes no results. If it stops in time, writing its results has
-  /// no time limit.
-  /// \param threads number of threads; if there is no value or it is 0, the number of cores
+  /// second after the interrupt, the program ends and writes no results. On a busy machine, the program waits up to
+  /// nine seconds, until the computation has had half a second of processor time. If it stops in time, writing its
+  /// results has no time limit. \param threads number of threads; if there is no value or it is 0, the number of cores
   /// \param work computation; its parameter is the request to stop
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
   /// Runs a computation like the overload above and shows a progress bar.

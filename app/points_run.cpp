@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/first_answer.h"
 #include "app/interrupt.h"
 #include "app/progress_bar.h"
 #include "app/ranks.h"
 #include "app/study_bar.h"
+#include "studies/sweep/io/sweep_files.h"
 #include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
@@ -19,7 +21,7 @@ namespace {
 /// Progress bar that also shows the number of points per second and the number of failed points.
 class PointsBar : public studies::SweepObserver {
  public:
-  /// \param so_far function that returns a line about the finished points; may be empty
+  /// \param so_far returns a line about the finished points for long runs; may be empty
   PointsBar(RunText text, const CommonOptions& common, std::function<std::string()> so_far)
       : bar_(std::move(text), common), so_far_(std::move(so_far)) {}
 
@@ -33,10 +35,12 @@ class PointsBar : public studies::SweepObserver {
     const auto now = std::chrono::steady_clock::now();
     if (!so_far_ || now - last_line_ < kTimeBetweenLines || done == total) return;
     bar_.write_lines(so_far_() + '\n');
-    // Reading many points takes time. The intervals between lines therefore increase during a long run.
+    // Reading all finished points takes time. Long runs have many points, so the interval between two lines increases
+    // with this time.
     last_line_ = std::chrono::steady_clock::now();
     last_line_ += kPauseFactor * (last_line_ - now);
   }
+  ProgressBar& bar() { return bar_; }
   void at_fraction(double share) override {
     share_ = std::max(share_, share);
     bar_.at(share_, remark_);
@@ -54,6 +58,19 @@ class PointsBar : public studies::SweepObserver {
   std::uint64_t begun_with_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Computes the first point with a larger error, if no point is finished yet. Returns a line about the result, or an
+/// empty text if there is none.
+std::string first_point_text(const studies::Sweep& sweep, const compute::ResultStore& store, const Cancellation* stop) {
+  // Errors of the preliminary values, as a multiple of the errors of the study.
+  constexpr double coarse = 16.0;
+  if (sweep.size() == 0 || !store.finished().empty()) return {};
+  studies::Study study = sweep.study();
+  study.level = studies::ErrorLevel{coarse, 0};
+  const std::optional<compute::StoredPoint> point = studies::compute_point(study, 0, sweep.values(0), stop);
+  if (!point || point->failed || !store.finished().empty()) return {};
+  return "preliminary values of the first point, with larger errors: " + studies::point_text(sweep, *point) + '\n';
+}
 
 /// Returns `code` if at least one point succeeded or there are no points. If every point failed, writes a message and
 /// returns ExitCode::answer_is_no.
@@ -85,6 +102,9 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
     if (command.so_far) so_far = [&] { return command.so_far(store.points()); };
     PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common, std::move(so_far));
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      const FirstAnswer first(bar.bar(), cancel, [&](std::optional<double>, const Cancellation* stop) {
+        return first_point_text(sweep, store, stop);
+      });
       const DistributeTasks share = distribute_among(session, slots(common), cancel);
       complete =
           share ? studies::distribute_sweep(sweep, store, &bar, share) : studies::run_sweep(sweep, store, &bar, cancel);

@@ -23,8 +23,8 @@ struct PointsCommand {
   /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;
   std::string document;  ///< name of the JSON document in the output folder
-  /// Function that summarises the finished points in one line. During a long run, this line is written from time to
-  /// time. Empty: no such lines are written.
+  /// Returns a summary of the finished points in one line. Long runs print this line from time to time. If empty, no
+  /// such lines are printed.
   std::function<std::string(const std::vector<compute::StoredPoint>& points)> so_far = {};
   /// Function that adds further output files.
   /// \param result result of the computation; it has a value when the contents of the files are requested

@@ -60,6 +60,7 @@ void SearchBar::at_fraction(double fraction) {
 
 void SearchBar::at(std::size_t evaluated) {
   bar_.count(fmt::format("{} {} evaluated{}", evaluated, of_, best_.empty() ? "" : ", best so far: " + best_));
+  write_best();
 }
 
 void SearchBar::on_best(std::function<std::string(const studies::Variant&)> text,
@@ -70,13 +71,18 @@ void SearchBar::on_best(std::function<std::string(const studies::Variant&)> text
 
 void SearchBar::at_best(const studies::Variant& best) {
   if (text_of_best_) best_ = text_of_best_(best);
+  is_new_ = !best_.empty();
+  write_best();
+  if (at_best_) at_best_(best);
+}
+
+void SearchBar::write_best() {
   // Short runs print no lines, because their results follow soon.
   const auto now = std::chrono::steady_clock::now();
-  if (!best_.empty() && now - last_line_ > kTimeBetweenLines) {
-    bar_.write_lines("best so far: " + best_ + "\n");
-    last_line_ = now;
-  }
-  if (at_best_) at_best_(best);
+  if (!is_new_ || now - last_line_ <= kTimeBetweenLines) return;
+  bar_.write_lines("best so far: " + best_ + "\n");
+  last_line_ = now;
+  is_new_ = false;
 }
 
 void SearchBar::at_group(double fraction, std::size_t designs) {

@@ -8,7 +8,7 @@ namespace retrace {
 
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;        ///< one full turn, rad
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;  ///< one degree, rad
-inline constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;    ///< one second of arc, rad
+inline constexpr double kRadPerArcsec = kRadPerDeg / 3600.0;    ///< one arc second in rad
 inline constexpr double kArcsecPerRad = 3600.0 / kRadPerDeg;
 
 /// An angle, stored in radians. Files and commands use degrees; computations use radians.

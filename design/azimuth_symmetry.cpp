@@ -34,16 +34,17 @@ std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
   const geometry::ArrayLayout& array = part.array;
   return std::visit(
       Overloaded{[&](const geometry::RtpElement&) {
-                   // A rotation by 90 degrees and a shift by one cell map a checker array onto itself.
+                   // A checker array is mapped onto itself by a rotation by 90 degrees and a shift by one cell.
                    const bool is_checker =
                        array.arrangement == Arrangement::checker && array.x_gap_mm == array.y_gap_mm;
                    return std::optional(AzimuthSymmetry{is_checker ? 90.0 : 180.0, 0.0});
                  },
                  [&](const geometry::HexagonalCube& cube) { return of_cubes(cube, 120.0); },
                  [&](const geometry::TriangularCube& cube) {
-                   // In an array, every second cell is rotated by 180 degrees.
+                   // In an array of triangular cube corners, every second cell is rotated by 180 degrees.
                    return of_cubes(cube, array.arrangement == Arrangement::single ? 120.0 : 60.0);
                  },
+                 [](const geometry::RuledCells&) { return std::optional<AzimuthSymmetry>(); },
                  [&](const geometry::RoundCube& cube) { return cube.outline ? std::nullopt : of_cubes(cube, 120.0); }},
       part.element);
 }

@@ -9,6 +9,7 @@
 
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
+#include "design/mesh_keys.h"
 #include "geometry/io/substrate_rows.h"
 
 namespace retrace::design {
@@ -98,6 +99,7 @@ std::string_view shape_key_of(const EntranceForm& form) {
   return std::visit(Overloaded{[](const geometry::PlaneEntrance&) { return "entrance_surface.kind"; },
                                [](const geometry::BiconicEntrance&) { return "entrance_surface.radii_mm"; },
                                [](const geometry::FormulaEntrance&) { return "entrance_surface.formula"; },
+                               [](const geometry::StepFace&) { return "entrance_surface.file"; },
                                [](const auto&) { return "entrance_surface.radius_mm"; }},
                     form.shape);
 }
@@ -105,10 +107,10 @@ std::string_view shape_key_of(const EntranceForm& form) {
 }  // namespace
 
 OutlineKeys with_absolute_path(OutlineKeys outline) {
-  if (outline.dxf.empty()) return outline;
-  outline.dxf = fs::absolute(outline.dxf).lexically_normal();
+  if (outline.file.empty()) return outline;
+  outline.file = fs::absolute(outline.file).lexically_normal();
   for (auto& [key, value] : outline.values)
-    if (key == "dxf") value = outline.dxf.string();
+    if (key == "dxf" || key == "file") value = outline.file.string();
   return outline;
 }
 
@@ -151,6 +153,10 @@ const FacetPlanesFile* Design::facet_planes() const {
   return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
 }
 
+const CellSpread* Design::cell_spread() const {
+  return elements() != nullptr && elements()->cell_spread ? &*elements()->cell_spread : nullptr;
+}
+
 double Design::thickness_mm() const {
   return std::visit(Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
                                [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
@@ -176,7 +182,10 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                                 design.where(geometry::substrate_shape_key(*array.part.substrate)),
                                 what + " is not available for elements on a [substrate], only for elements on a plane");
                         },
-                        [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
+                        [&](const PartMesh&) {
+                          const MeshKeys keys = mesh_keys_of(design);
+                          refuse_solid(mesh_file_key(design), keys.is_solid ? "solid of a file" : "mesh");
+                        },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
                         [&](const ZonedPart&) {
                           if (!capabilities.zones) refuse_solid("zone", "part with zones");
@@ -198,6 +207,9 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
     throw InputError(
         design.where("wet_back.index"),
         what + " is not available for a part with a [wet_back], only for the same medium behind all elements");
+  if (design.cell_spread() != nullptr && !capabilities.cell_spreads)
+    throw InputError(design.where("array.depth_spread_nm"),
+                     what + " adds the intensities of cells: remove depth_spread_nm and spacing_spread_nm");
 }
 
 }  // namespace retrace::design

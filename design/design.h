@@ -143,13 +143,20 @@ struct OutlineKeys {
   /// Keys that are set in the table, and their values, in the order of the file format. The margin and the tolerance
   /// are not included, because geometry::PlanRegion stores them.
   std::vector<std::pair<std::string, schema::Value>> values;
-  /// Path of the DXF file, relative to the working directory; empty if the outline is not in a file.
-  std::filesystem::path dxf;
+  /// Path of the DXF or STEP file, relative to the working directory; empty if the outline is not in a file.
+  std::filesystem::path file;
 };
 
-/// Returns the keys after making the path of the DXF file absolute. A design that is written to another folder needs an
+/// Returns the keys after making the path of the file absolute. A design that is written to another folder needs an
 /// absolute path.
 OutlineKeys with_absolute_path(OutlineKeys outline);
+
+/// Random differences between the cells of an infinite array whose light interferes. The differences are Gaussian and
+/// independent from cell to cell.
+struct CellSpread {
+  double depth_nm = 0.0;    ///< standard deviation of the depth of a cell
+  double spacing_nm = 0.0;  ///< standard deviation of the position of a cell, along x and along y
+};
 
 /// Array of elements, the plate in front of them, and differences between individual elements.
 struct ElementArray {
@@ -159,6 +166,8 @@ struct ElementArray {
   /// Keys that determine `part.array.outline`. If there are no such keys, documents of the design describe the outline
   /// by the sides and arcs of its borders.
   OutlineKeys outline = {};
+  /// Spread of the cells if the fields of different cells are added. Empty: their intensities are added.
+  std::optional<CellSpread> cell_spread = {};
 };
 
 /// Part whose shape is given by a mesh.
@@ -261,6 +270,7 @@ struct Substance {
   std::optional<double> temperature_c;  ///< temperature of part and air; if empty, the temperature of the material data
   Absorption absorption_per_mm;
   double back_index = 1.0;  ///< refractive index of the medium behind the facets, relative to air; 1..3
+  bool is_hollow = false;   ///< true: the body is the air in front of three mirrors, and the members above describe air
 
   bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
 };
@@ -437,6 +447,9 @@ struct Design {
   /// Returns the mask of the array. Null if there is none.
   const ArrayMask* mask() const;
   const FacetPlanesFile* facet_planes() const;
+  /// Returns the spread of the cells if the light of different cells interferes, or null if their intensities are
+  /// added.
+  const CellSpread* cell_spread() const;
   /// \pre elements()
   const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
   geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
@@ -465,6 +478,8 @@ struct Capabilities {
   bool entrances = false;
   bool shells = false;
   bool wet_backs = false;
+  bool cell_spreads =
+      true;  ///< true if the study can add the fields of cells; false if it can only add their intensities
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

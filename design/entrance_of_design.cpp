@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <variant>
@@ -10,6 +11,7 @@
 #include "core/number_format.h"
 #include "design/entrance_file.h"
 #include "design/entrance_form.h"
+#include "design/step_faces.h"
 #include "geometry/elements/substrate_checks.h"
 
 namespace retrace::design {
@@ -18,9 +20,22 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
+/// Checks that a face of a STEP file covers a part.
+void check_cover(const geometry::StepFace& face, const geometry::EntranceSurface& surface,
+                 const geometry::Polygon& outline) {
+  constexpr int kPointsOfEdge = 64;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    for (int i = 0; i < kPointsOfEdge; ++i) {
+      const double fraction = static_cast<double>(i) / kPointsOfEdge;
+      const Vec2 p = outline[k] + fraction * (outline[(k + 1) % outline.size()] - outline[k]);
+      require_cover(face, surface.surface_position(p).value_or(Vec2::Constant(NAN)), p);
+    }
+}
+
 geometry::Entrance formed_entrance(const EntranceForm& form, const geometry::Part& part, const Vec3& origin_mm) {
   auto surface = surface_of(form, origin_mm);
   geometry::check_folds(*surface, part.outline);
+  if (const auto* const face = std::get_if<geometry::StepFace>(&form.shape)) check_cover(*face, *surface, part.outline);
   return surface;
 }
 
@@ -87,6 +102,12 @@ geometry::Entrance entrance_of_design(const Design& design, const geometry::Part
     check_room(entrance, part, file != nullptr ? file->file.string() : std::string());
     return entrance;
   });
+}
+
+std::optional<geometry::FaceSurface> closed_form_of_entrance(const Design& design, const geometry::Part& part) {
+  const EntranceForm* const form = design.entrance->form();
+  if (form == nullptr) return std::nullopt;
+  return closed_form_of(*form, origin_of(*design.entrance, part));
 }
 
 }  // namespace retrace::design

@@ -37,7 +37,9 @@ struct NominalFacet {
   double radius_mm = 0.0;
 
   explicit NominalFacet(geometry::Element element) {
-    std::visit(Overloaded{[](geometry::RtpElement&) {}, [](auto& cube) { cube.cant = {}; }}, element);
+    std::visit(
+        Overloaded{[](geometry::RtpElement&) {}, [](geometry::RuledCells&) {}, [](auto& cube) { cube.cant = {}; }},
+        element);
     const geometry::CellFacet facet = geometry::element_cell(element).facets.front();
     const geometry::Vec3 down(facet.plane.slope.x(), facet.plane.slope.y(), -1.0);
     const raytrace::FacetFrame frame(down.normalized(), -facet.plane.height_mm / down.norm(), *facet.centroid_mm);

@@ -17,7 +17,8 @@ InputLocation light_location(const Design& design) {
   return design.where(design.light.spectrum() ? "light.spectrum" : "light.wavelength_nm");
 }
 
-/// Returns the spectral flux of the lamp or of the spectral lines, before representative wavelengths are selected.
+}  // namespace
+
 materials::Spectrum flux_of(const Design& design) {
   using Kind = LightSpectrum::Kind;
   const LightSpectrum& light = *design.light.spectrum();
@@ -33,8 +34,6 @@ materials::Spectrum flux_of(const Design& design) {
   for (const LightSpectrum::Line& line : light.lines) lines.push_back({line.wavelength_nm, line.power});
   return materials::line_spectrum(lines, efficiency);
 }
-
-}  // namespace
 
 materials::Material material_of(const Design& design, const materials::MaterialLibrary& library) {
   const Substance& substance = design.substance;

@@ -38,6 +38,11 @@ double index_of_body(const Design& design, const materials::Material& material, 
 double absorption_at(const Design& design, const Absorption& given, std::string_view key,
                      const materials::Material& material, double wavelength_nm);
 
+/// Returns the spectral flux of the lamp or of the spectral lines, before representative wavelengths are selected.
+/// \pre the light of the design is a spectrum
+/// \throw InputError if the spectrum is not valid
+materials::Spectrum flux_of(const Design& design);
+
 /// Returns the wavelengths to trace: all spectral lines of the design, or a few wavelengths that represent its lamp.
 /// \throw InputError at `light.spectrum` if a spectrum is not valid
 materials::Spectrum wavelengths_to_trace(const Design& design);

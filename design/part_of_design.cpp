@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "design/design_part.h"
-#include "design/file_names.h"
+#include "design/mesh_keys.h"
 #include "design/zone_elements.h"
 #include "geometry/check/boundary_check.h"
 #include "geometry/check/mesh_union.h"
-#include "geometry/io/stl_file.h"
+#include "geometry/direction.h"
+#include "geometry/io/mesh_file.h"
+#include "geometry/io/step_solid.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/plate.h"
@@ -24,6 +28,11 @@ namespace {
 // Relative tolerance of the thickness of a mesh. STL files have single precision, and thicknesses may be rounded values
 // from drawings.
 constexpr double kSameThickness = 1e-4;
+// Maximum distance by which the vertices of a solid are moved onto the planes of their faces, mm. CAD programs treat
+// points nearer than this as equal.
+constexpr double kMaxSettling_mm = 1e-3;
+// Error of a vertex of a solid in double precision, relative to the largest coordinate.
+constexpr double kDoubleRounding = 1e-12;
 
 void tell(Warnings* warnings, const Design& design, std::string_view id, const std::string& text) {
   if (warnings != nullptr)
@@ -50,7 +59,7 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   return std::move(mended.mesh);
 }
 
-/// Returns the union of all bodies of a mesh. The bodies may intersect or contain each other.
+/// Returns the union of all bodies of a mesh. The bodies may touch, intersect or contain each other.
 /// \param report result of check_boundary() for this mesh
 /// \pre the mesh is closed and manifold
 geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh& mesh,
@@ -58,9 +67,6 @@ geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh
   std::string fault = "does not enclose one volume";
   if (const auto& p = report.crossing_mm)
     fault = fmt::format("crosses itself near ({}, {}, {}) mm", fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3));
-  if (!design.mesh()->allow_open)
-    throw InputError(
-        fmt::format("the mesh {}; set allow_open = true in [part] to trace the union of its bodies", fault));
   std::optional<geometry::MeshUnion> all = geometry::union_of_bodies(mesh);
   if (!all)
     throw InputError(
@@ -108,12 +114,75 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, Warn
   if (size_mm >= kSmallestMm && size_mm <= kLargestMm) return;
   const bool is_small = size_mm < kSmallestMm;
   const double probable_scale = is_small ? 1000.0 : 0.001;
-  const bool is_tried = mesh_scale(design, "part") == probable_scale;
+  const bool is_tried = mesh_keys_of(design).scale == probable_scale;
   tell(warnings, design, "unlikely_unit",
        fmt::format("the largest dimension of the mesh is {} mm; {}", rounded_text(size_mm),
                    is_tried ? "check scale in [part]"
                             : fmt::format("if the unit of the file is the {}, set scale = {} in [part]",
                                           is_small ? "metre" : "micrometre", shortest(probable_scale))));
+}
+
+/// Returns the rotation that the keys `rotate_deg` and `facing` describe.
+Eigen::Matrix3d part_from_file(const MeshKeys& keys) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  const auto rotate = [&](const geometry::Vec3& axis, double angle_deg) {
+    if (angle_deg != 0.0) rotation = geometry::rotation_about(axis, Angle::from_deg(angle_deg)) * rotation;
+  };
+  rotate(geometry::Vec3::UnitX(), keys.rotate_deg[0]);
+  rotate(geometry::Vec3::UnitY(), keys.rotate_deg[1]);
+  rotate(geometry::Vec3::UnitZ(), keys.rotate_deg[2]);
+  if (keys.faces_down) rotate(geometry::Vec3::UnitX(), 180.0);
+  return rotation;
+}
+
+/// Mesh of a file in the orientation of the part.
+struct OrientedMesh {
+  geometry::TriangleMesh mesh;
+  std::optional<double> rounding_mm;  ///< maximum error of a vertex; empty: that of single precision
+};
+
+OrientedMesh oriented_mesh(const Design& design, const MeshKeys& keys, Warnings* warnings) {
+  geometry::MeshOfFile read = geometry::read_mesh_file(design.mesh()->file, keys.scale);
+  if (read.trailing_bytes > 0)
+    tell(warnings, design, "trailing_bytes",
+         fmt::format("the file has {} bytes after the last triangle, which are ignored", read.trailing_bytes));
+  warn_of_unit(design, read.mesh, warnings);
+  if (keys.weld_mm > 0.0) read.mesh = geometry::welded(read.mesh, keys.weld_mm);
+  const Eigen::Matrix3d rotation = part_from_file(keys);
+  if (!rotation.isIdentity(0.0))
+    for (geometry::Vec3& p : read.mesh.vertices) p = rotation * p;
+  return {std::move(read.mesh), {}};
+}
+
+OrientedMesh oriented_solid(const Design& design, const MeshKeys& keys, Warnings* warnings) {
+  geometry::SolidMesh solid = geometry::read_step_solid(design.mesh()->file, keys.chord_mm);
+  const Eigen::Matrix3d rotation = part_from_file(keys);
+  double largest_mm = 0.0;
+  for (geometry::Vec3& p : solid.mesh.vertices) {
+    p = rotation * p;
+    largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
+  }
+  for (std::optional<geometry::FacetPlane>& plane : solid.planes)
+    if (plane) plane->normal = rotation * plane->normal;
+  const double apart_mm = geometry::snap_to_face_planes(solid, kMaxSettling_mm);
+  if (const std::size_t curved = solid.curved_faces(); curved > 0)
+    tell(warnings, design, "curved_faces",
+         fmt::format("{} curved face{} of the solid {} traced as triangles within {} mm of the exact surface", curved,
+                     curved == 1 ? "" : "s", curved == 1 ? "is" : "are", shortest(keys.chord_mm)));
+  return {std::move(solid.mesh), std::max(kDoubleRounding * largest_mm, 2.0 * apart_mm)};
+}
+
+/// Reads the mesh or the solid of a design, and checks it.
+/// \pre the part of the design is a mesh or a solid
+OrientedMesh checked_mesh(const Design& design, Warnings* warnings) {
+  const MeshKeys keys = mesh_keys_of(design);
+  return read_named(design.where(mesh_file_key(design)), [&] {
+    OrientedMesh oriented =
+        keys.is_solid ? oriented_solid(design, keys, warnings) : oriented_mesh(design, keys, warnings);
+    oriented.mesh = read_named({design.mesh()->file.string(), 0, ""},
+                               [&] { return checked(design, std::move(oriented.mesh), warnings); });
+    return oriented;
+  });
 }
 
 void check_thickness(const Design& design, const geometry::Part& part) {
@@ -128,12 +197,7 @@ void check_thickness(const Design& design, const geometry::Part& part) {
 geometry::TriangleMesh mesh_of_design(const Design& design, Warnings* warnings) {
   if (const Plate* const plate = std::get_if<Plate>(&design.shape))
     return geometry::box_mesh({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
-  const std::string name = design.mesh()->file.string();
-  return read_named(design.where("part.mesh"), [&] {
-    geometry::TriangleMesh mesh = geometry::read_stl(design.mesh()->file, mesh_scale(design, "part"));
-    warn_of_unit(design, mesh, warnings);
-    return read_named({name, 0, ""}, [&] { return checked(design, std::move(mesh), warnings); });
-  });
+  return checked_mesh(design, warnings).mesh;
 }
 
 geometry::Part part_of_design(const Design& design, Warnings* warnings) {
@@ -141,13 +205,16 @@ geometry::Part part_of_design(const Design& design, Warnings* warnings) {
     return geometry::build_plate({plate->size_mm[0], plate->size_mm[1]}, plate->thickness_mm);
   if (design.zoned()) return geometry::build_part(zones_of(design));
   if (!design.mesh()) return part_of(design);
-  const geometry::TriangleMesh mesh = mesh_of_design(design, warnings);
+  const OrientedMesh oriented = checked_mesh(design, warnings);
   try {
-    geometry::Part part = geometry::part_of_mesh(mesh);
+    geometry::Part part = geometry::part_of_mesh(oriented.mesh, oriented.rounding_mm);
     check_thickness(design, part);
+    if (design.entrance && !part.entrance_pieces.empty())
+      throw InputError("must have a convex entrance face without holes if the design has an [entrance_surface]");
     return part;
   } catch (const InputError& error) {
-    throw InputError(design.where("part.mesh"), fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
+    throw InputError(design.where(mesh_file_key(design)),
+                     fmt::format("{}: {}", design.mesh()->file.string(), error.what()));
   }
 }
 

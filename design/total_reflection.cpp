@@ -10,16 +10,19 @@
 namespace retrace::design {
 namespace {
 
-/// Returns the directions inside the part from which light is incident normally on a facet. There is one direction for
-/// each facet and each order of reflections. A facet that light hits after reflections is replaced by its mirror image,
-/// which unreflected light hits at the same angle.
-std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
+/// Largest number of faces of a cell for which all orders of reflections are considered. Ruled cells with more faces
+/// are irregular, and light that is reflected by all of them does not return.
+constexpr std::size_t kMaxReflectingFaces = 4;
+
+/// Adds the directions of square_directions() for one cell.
+void add_square_directions(const geometry::Cell& cell, std::vector<geometry::Vec3>& directions) {
   std::vector<geometry::Vec3> normals;
-  for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)
-    normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
+  for (const geometry::CellFacet& facet : cell.facets)
+    if (!facet.is_flat && !facet.is_edge)
+      normals.push_back(geometry::Vec3(facet.plane.slope.x(), facet.plane.slope.y(), -1.0).normalized());
+  if (normals.empty() || normals.size() > kMaxReflectingFaces) return;
   std::vector<std::size_t> order(normals.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::vector<geometry::Vec3> directions;
   do {
     Eigen::Matrix3d image = Eigen::Matrix3d::Identity();
     for (const std::size_t k : order) {
@@ -28,6 +31,15 @@ std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
       image = image * (Eigen::Matrix3d::Identity() - 2.0 * normals[k] * normals[k].transpose());
     }
   } while (std::next_permutation(order.begin(), order.end()));
+}
+
+/// Returns the directions inside the part from which light is incident normally on a facet. There is one direction for
+/// each facet and each order of reflections. A facet that light hits after reflections is replaced by its mirror image,
+/// which unreflected light hits at the same angle.
+std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
+  std::vector<geometry::Vec3> directions;
+  for (const geometry::Cell& cell : geometry::distinct_cells(part.element, part.angle_errors))
+    add_square_directions(cell, directions);
   return directions;
 }
 

@@ -26,9 +26,9 @@ struct DrawnLater {
 
 }  // namespace
 
-Inspection inspect(const Design& design) {
+Inspection inspect(const Design& design, const InspectRequest& request) {
   const auto held = std::make_shared<DrawnLater>();
-  held->inspection = studies::inspect(design.content().design, materials::MaterialLibrary::shipped());
+  held->inspection = studies::inspect(design.content().design, materials::MaterialLibrary::shipped(), request);
   Inspection result;
   result.warnings = held->inspection.warnings;
   result.json = studies::inspect_json(held->inspection);
@@ -37,6 +37,7 @@ Inspection inspect(const Design& design) {
   result.section = drawing_of_text([held] { return held->made().section; }, true);
   result.entrance_surface = drawing_of_text([held] { return held->made().entrance; }, true);
   result.shells = drawing_of_text([held] { return held->made().shells; }, true);
+  result.pin_axes = drawing_of_text([held] { return held->made().pin_axes; }, true);
   result.view = drawing_of_text([held] { return held->made().view; }, false);
   return result;
 }

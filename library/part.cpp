@@ -42,7 +42,7 @@ Mesh mesh(const Design& design, const SolidRequest& request) {
 
 ExportResult export_solid(const Design& design, const std::filesystem::path& file, const SolidRequest& request) {
   const studies::SolidFormat format = studies::solid_format(file.string());
-  const studies::Solid solid = studies::make_solid(design.content().design, request);
+  const studies::Solid solid = studies::make_solid(design.content().design, request, studies::solid_entrance(format));
   write_file_atomically(file, studies::solid_text(solid, format));
   return {solid.warnings, studies::solid_json(solid, file.string()), studies::solid_table(solid)};
 }

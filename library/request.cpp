@@ -31,6 +31,9 @@ void assign(CameraRequest& request, std::string_view field, const FieldValue& va
 void assign(RoadRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
+void assign(InspectRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
 void assign(JobRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angle.h"
 #include "core/number_format.h"
 #include "report/colour_scale.h"
 #include "report/style.h"
@@ -91,6 +92,21 @@ void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, doubl
               Align::left);
 }
 
+/// Draws circles around the centre of a picture.
+void draw_circles(Canvas& canvas, const ImagePanel& panel, Point corner, Size size) {
+  constexpr int kSides = 180;
+  for (const double radius : panel.circles) {
+    const double drawn = radius * size.width / panel.width;
+    std::vector<Point> points;
+    for (int k = 0; k <= kSides; ++k) {
+      const double angle = kTwoPi * k / kSides;
+      points.push_back({corner.x + 0.5 * size.width + drawn * std::cos(angle),
+                        corner.y + 0.5 * size.height + drawn * std::sin(angle)});
+    }
+    canvas.line(points, {kWhite, 1.0, {4.0, 3.0}});
+  }
+}
+
 void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
   canvas.text({corner.x, corner.y + 16.0}, panel.title, kPanelFont, kText, Align::left);
   const ValueScale scale = scale_of(panel);
@@ -98,6 +114,7 @@ void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
   const Size size = picture_size(panel);
   draw_values(canvas, at, size, panel.columns, panel.values,
               [&](double value) { return colour_of(scale.fraction(value)); });
+  draw_circles(canvas, panel, at, size);
   draw_frame(canvas, at, size);
   draw_value_bar(canvas, panel, scale, {at.x + size.width + kImageBarGap, at.y}, size.height);
   draw_scale_bar(canvas, panel, {at.x, at.y + size.height}, size.width);

@@ -22,6 +22,7 @@ struct ImagePanel {
   double full_value = 0.0;     ///< value at the upper end of the colour scale; 0 means the largest value
   /// True: the colour scale is logarithmic and covers the four decades below its upper end.
   bool is_logarithmic = false;
+  std::vector<double> circles = {};  ///< radii of circles around the centre of the picture, in `length_unit`
 };
 
 /// Panels next to each other under one title, with lines of remarks.

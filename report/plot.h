@@ -58,7 +58,7 @@ struct LinePlot {
   /// Range of the y axis. The default is rounded_range() of the points, or whole decades if the axis is logarithmic.
   std::optional<Range> y_range = {};
   std::vector<Range> shaded_x = {};  ///< ranges of x with a shaded background
-  bool y_is_logarithmic = false;     ///< true: the y axis has decades; points with y <= 0 are omitted
+  bool y_is_logarithmic = false;     ///< true: the y axis is logarithmic; points with y <= 0 are omitted
 };
 
 /// Returns the range of the values of the colour scale. Empty if the plot has no colour scale.

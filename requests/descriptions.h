@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "requests/image.h"
+#include "requests/inspect.h"
 #include "requests/job.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
@@ -21,9 +22,9 @@ namespace retrace::requests {
 
 /// Tuple of all types of requests, for templates that iterate over the types.
 using AllRequests =
-    std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest, MetrologyRequest,
-               SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest, TraceRequest,
-               RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
+    std::tuple<DetectorRequest, CameraRequest, RoadRequest, InspectRequest, JobRequest, FabricationRequest,
+               MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RangingRequest, RaysRequest,
+               TraceRequest, RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -31,6 +32,8 @@ template <>
 const Request& description<CameraRequest>();
 template <>
 const Request& description<RoadRequest>();
+template <>
+const Request& description<InspectRequest>();
 template <>
 const Request& description<JobRequest>();
 template <>

@@ -23,7 +23,7 @@ struct RangingRequest {
   std::vector<double> incidence_deg = {0.0};
   /// Azimuths of the source, in degrees.
   std::vector<double> azimuth_deg = {0.0};
-  /// Polarisation of the light that is sent: that of the design, or unpolarised, linear, right or left (circular).
+  /// Polarisation of the transmitted light: as in the design, or unpolarised, linear, right or left (circular).
   std::string polarisation = "design";
   /// Direction of linear polarisation, from the projection of +x, as seen from the source, in degrees; >= -180 and <=
   /// 180.

@@ -22,6 +22,7 @@
 #include "studies/compose/io/zone_designs.h"
 #include "studies/fabrication/job_maker.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/machining_limits.h"
 #include "studies/sweep/shared_sweep.h"
 
 namespace retrace::app {
@@ -118,11 +119,15 @@ WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making,
   return whole;
 }
 
+studies::Study study_of_parts(const ComposeOptions& options, const CommonOptions& common) {
+  return studies::with_machining_limits(studies::read_study(options.study, common.overrides, common.seed));
+}
+
 /// Searches for the best composition and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
-  const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+  const studies::Study study = study_of_parts(options, common);
   const studies::ComposeRequest request = studies::read_compose(study);
   const OrderlyInterrupt interrupt;
   if (options.for_worst && !(request.errors && request.errors->worst_fraction))
@@ -185,7 +190,7 @@ ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common)
   return run_on_ranks(
       common, slots(common), [&](compute::MpiSession* session) { return compose_part(options, common, session); },
       [&] {
-        const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
+        const studies::Study study = study_of_parts(options, common);
         return studies::compute_task(studies::compose_scan(study, studies::read_compose(study)));
       });
 }

@@ -97,10 +97,12 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   const auto format = file.empty() ? studies::SolidFormat::stl : studies::solid_format(file);
   const auto request = request_of<SolidRequest>(options.fields, common);
   const design::Design design = design::read_design(options.design, common.overrides);
-  const studies::Solid solid = studies::make_solid(design, request);
+  const studies::Solid solid = studies::make_solid(design, request, studies::solid_entrance(format));
   ResultFiles files(without_folder(common), files_read({design}));
   files.add_named("--out", file, [&] { return studies::solid_text(solid, format); });
   files.prepare();
+  if (format == studies::SolidFormat::step && !common.quiet)
+    if (const std::string notice = studies::step_notice(solid); !notice.empty()) print_to_stderr("retrace: " + notice);
   return files.write(studies::solid_json(solid, file), studies::solid_table(solid), solid.warnings);
 }
 

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/first_answer.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/progress_bar.h"
 #include "app/ranks.h"
 #include "app/request_options.h"
 #include "app/shared_arguments.h"
@@ -34,7 +36,7 @@ namespace retrace::app {
 namespace {
 
 // Minimum time between two previews of an unfinished camera picture.
-constexpr std::chrono::seconds kPreview{10};
+constexpr std::chrono::seconds kPreview{5};
 // Number of passes that each MPI rank computes at a time. A pass traces four light paths per pixel and uses all threads
 // of the rank.
 constexpr std::size_t kPassesAtATime = 1;
@@ -116,21 +118,23 @@ ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, 
                      {.complete = result.complete});
 }
 
-/// Writes previews of the unfinished camera picture to the output folder. The time between two previews is at least
-/// kPreview.
+/// Reports the unfinished camera picture: prints a line about it, and writes a preview to the output folder. The time
+/// between two reports is at least kPreview.
 class Preview {
  public:
-  explicit Preview(const CommonOptions& common) : out_(common.out) {}
+  Preview(const CommonOptions& common, ProgressBar& bar) : out_(common.out), bar_(bar) {}
 
   void operator()(const studies::CameraResult& result) {
     const auto now = std::chrono::steady_clock::now();
-    if (out_.empty() || now - last_ < kPreview) return;
+    if (now - last_ < kPreview) return;
     last_ = now;
-    write_file_atomically(std::filesystem::path(out_) / kCameraPng, report::camera_png(result));
+    bar_.write_lines("so far: " + studies::camera_table(result));
+    if (!out_.empty()) write_file_atomically(std::filesystem::path(out_) / kCameraPng, report::camera_png(result));
   }
 
  private:
   std::string out_;
+  ProgressBar& bar_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
@@ -145,10 +149,22 @@ std::vector<std::string> files_of(const std::vector<design::Design>& designs, co
   return files;
 }
 
+/// Computes a coarse picture without diffraction. Returns lines about it, or an empty text if the computation is
+/// cancelled.
+std::string preliminary_picture(const design::Design& design, CameraRequest request, const Cancellation* cancel) {
+  request.diffraction = false;
+  request.passes = 2;
+  request.columns = 100;
+  request.rows = 75;
+  request.background.clear();
+  const studies::CameraResult result = studies::CameraStudy(design, request).run(nullptr, cancel);
+  return result.complete ? "preliminary, without diffraction: " + studies::camera_table(result) : std::string();
+}
+
 /// Computes the camera picture and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode photograph(const ImageOptions& options, const CommonOptions& common, compute::MpiSession* session) {
-  design::Design design = design::read_design(options.designs.front(), common.overrides);
+  const design::Design design = design::read_design(options.designs.front(), common.overrides);
   studies::CameraResult result;
   const auto request = request_of<CameraRequest>(options.fields, common);
   const std::vector<std::string> inputs = files_of({design}, request);
@@ -160,16 +176,22 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, co
   add(kCameraPng, [](const auto& r) { return report::camera_png(r); });
   if (options.false_colour)
     add("false_colour.png", [](const auto& r) { return report::render_png(report::false_colour_plot(r)); });
-  const studies::CameraStudy study(std::move(design), request);
+  const studies::CameraStudy study(design, request);
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  Preview preview(common);
-  interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
-    result = study.run(
-        bar, cancel, [&](const studies::CameraResult& unfinished) { preview(unfinished); },
-        distribute_among(session, kPassesAtATime, cancel));
-  });
+  {
+    ProgressBar bar({"rendering", what_shortens(request)}, common);
+    Preview preview(common, bar);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      const FirstAnswer first(bar, cancel, [&](std::optional<double>, const Cancellation* stop) {
+        return preliminary_picture(design, request, stop);
+      });
+      result = study.run(
+          &bar, cancel, [&](const studies::CameraResult& unfinished) { preview(unfinished); },
+          distribute_among(session, kPassesAtATime, cancel));
+    });
+  }
   for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
                      {.complete = result.complete});

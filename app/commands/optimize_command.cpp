@@ -36,7 +36,8 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
   return all;
 }
 
-/// Returns the request for the job of a study. Options that are not given are taken from [machining].
+/// Returns the request for the fabrication job of a study. The table [machining] of the study gives the machine, the
+/// process and the strategy if the command line does not.
 JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& common, const studies::Study& study) {
   JobRequest request = job_request(options.making, common);
   if (options.job.empty()) return request;
@@ -52,9 +53,9 @@ JobRequest request_of_job(const OptimizeOptions& options, const CommonOptions& c
   return request;
 }
 
-/// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
-/// not given, it is the value of the key machining.tool_width_mm of the study. If [machining] names a machine, the job
-/// uses the tool and the process of [machining].
+/// Returns the fabrication job of the best design. The tool width is the value of --tool-width-mm or, without this
+/// option, of the study's key machining.tool_width_mm. If [machining] names a machine, the job uses the tool and the
+/// process of [machining].
 studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {
@@ -93,7 +94,7 @@ void check_making_of(const OptimizeOptions& options, JobRequest request, const s
   studies::check_element(studies::make_candidate(study, example_values(study)).design(), request);
 }
 
-/// Returns the warnings about the study, the search and the job.
+/// Returns the warnings that concern the study, the search or the fabrication job.
 Warnings warnings_of(const studies::Study& study, const studies::Optimum& optimum,
                      const std::optional<studies::GeneratedJob>& made, compute::MpiSession* session) {
   Warnings warnings = remarks_of(session);
@@ -102,7 +103,7 @@ Warnings warnings_of(const studies::Study& study, const studies::Optimum& optimu
     warnings.push_back(
         {"designs_out_of_budget",
          fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
-                     optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
+                     optimum.budget_failures, optimum.designs.size(), optimum.budget_failure_reason)});
   if (made) append(warnings, made->warnings);
   return warnings;
 }
@@ -113,7 +114,7 @@ ExitCode search_and_write(const OptimizeOptions& options, const CommonOptions& c
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = study_of(options, common);
   const studies::OptimiseRequest request = studies::read_optimise(study);
-  studies::optimise_scan(study, request);  // throws if there are too many designs, before a store is created
+  studies::optimise_scan(study, request);  // throws an error for too many designs before a store is created
   const JobRequest making = request_of_job(options, common, study);
   check_making_of(options, making, study);
   const OrderlyInterrupt interrupt;
@@ -142,7 +143,7 @@ ExitCode search_and_write(const OptimizeOptions& options, const CommonOptions& c
         "designs", common);
     bar.on_best([&](const studies::Variant& best) { return studies::short_text(study, request, best); },
                 [&](const studies::Variant& best) {
-                  // If the run is killed, the file contains the best design so far.
+                  // The file is written for each new best design, so that it exists even if the run is killed.
                   if (!file.empty()) write_file_atomically(file.parent_path() / "best.toml", best_text(best));
                 });
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
@@ -158,7 +159,7 @@ ExitCode search_and_write(const OptimizeOptions& options, const CommonOptions& c
       files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                   without_middle(studies::optimum_text(study, request, optimum), common, "optimum.json"), warnings,
                   {.complete = optimum.complete,
-                   .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
+                   .interrupted = fmt::format("designs evaluated: {}", optimum.designs.size()),
                    .is_yes = optimum.best.has_value()});
   if (code != ExitCode::answer_is_no) return code;
   print_to_stderr("retrace: no feasible design: " + optimum.infeasible_reason);

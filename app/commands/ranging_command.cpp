@@ -31,8 +31,8 @@ std::vector<Argument> arguments(RangingOptions& options) {
   return all;
 }
 
-/// Adds the output files of the command.
-/// \param result result of the computation; it is filled before the files are written
+/// Registers the output files of the command. They are written after the computation.
+/// \param result result that the files will contain; the computation fills it later
 void add_files(ResultFiles& files, const RangingRequest& request, const studies::RangingResult& result) {
   const auto has_map = [&] { return !result.map.values.empty(); };
   files.add("ranging.csv", [&] { return studies::ranging_csv(result); });

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
+#include "core/text.h"
 #include "report/page/scene_view.h"
 #include "report/page/sections.h"
 
@@ -37,8 +38,8 @@ constexpr const char* kPageName = "report.html";
 /// folder. Without --out, it is report.html in the result folder.
 fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   if (common.out.empty()) return fs::path(options.folder) / kPageName;
-  const fs::path out = common.out;
-  return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
+  const std::string ending = ending_of(common.out);
+  return ending == ".html" || ending == ".htm" ? fs::path(common.out) : fs::path(common.out) / kPageName;
 }
 
 /// Checks that the output file in the result folder is not a symbolic link. With a link in a result folder from an

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/first_answer.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/progress_bar.h"
 #include "app/request_options.h"
 #include "core/number_format.h"
 #include "design/io/design_reader.h"
@@ -134,18 +136,46 @@ std::string text_of(const studies::RreResult& result, const CommonOptions& commo
   return is_shown_whole(table, common) ? table : studies::rre_summary(result, kMaxTableLines);
 }
 
+/// Returns settings of a rough computation that takes a few seconds: the first direction of each design, with a larger
+/// error and without other results.
+studies::RreSettings preliminary_settings(const studies::RreSettings& request) {
+  // Target error of preliminary values. Rays reach it within a second for most designs.
+  constexpr double preliminary_error = 3e-3;
+  studies::RreSettings settings;
+  settings.incidence_deg = {request.incidence_deg.empty() ? request.incidence_spans.front().low
+                                                          : request.incidence_deg.front()};
+  settings.azimuth_deg = {request.azimuth_deg.front()};
+  settings.target_error = std::max(preliminary_error, target_error_of(request));
+  settings.seed = request.seed;
+  return settings;
+}
+
+/// Computes preliminary values and returns them as a table. Returns an empty text if the computation is cancelled.
+std::string preliminary_table(const std::vector<design::Design>& designs, const studies::RreSettings& request,
+                              const Cancellation* cancel) {
+  const studies::RreResult result = studies::RreStudy(designs, preliminary_settings(request)).run(nullptr, cancel);
+  if (!result.complete) return {};
+  return fmt::format("preliminary values, with a larger error:\n{}", studies::rre_table(result));
+}
+
 ExitCode run(const RreOptions& options, const CommonOptions& common) {
-  studies::RreSettings request = settings_of(options, common);
-  std::vector<design::Design> designs = designs_of(options, common);
+  const studies::RreSettings request = settings_of(options, common);
+  const std::vector<design::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
   add_files(files, request, designs.size(), result);
-  const Words to_shorten = what_shortens_rre(request);
-  const studies::RreStudy study(std::move(designs), std::move(request));
+  const studies::RreStudy study(designs, request);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  interrupt.run(common, {"tracing", to_shorten},
-                [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
+  {
+    ProgressBar bar({"tracing", what_shortens_rre(request)}, common);
+    interrupt.run(common.threads, [&](const Cancellation* cancel) {
+      const FirstAnswer first(bar, cancel, [&](std::optional<double>, const Cancellation* stop) {
+        return preliminary_table(designs, request, stop);
+      });
+      result = study.run(&bar, cancel);
+    });
+  }
   warn_of_panels(result);
   warn_of_maps(result);
   return files.write(

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "app/commands.h"
 #include "app/points_run.h"
 #include "studies/quantity/io/study_reader.h"
@@ -17,12 +21,17 @@ ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
   command.add_files = [](ResultFiles& files, const auto& result) {
     files.add("sweep.csv", [&] { return studies::sweep_csv(*result); });
   };
+  std::optional<studies::Sweep> sweep;
   command.read = [&] {
     const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
     const auto samples = study.document->number_if("sweep.samples");
     command.fewer_points = samples ? fmt::format("give a smaller sweep.samples (now {:.0f})", *samples)
                                    : "give the parameters fewer values";
-    return studies::read_sweep(study);
+    sweep.emplace(studies::read_sweep(study));
+    return *sweep;
+  };
+  command.so_far = [&](const std::vector<compute::StoredPoint>& points) {
+    return studies::sweep_so_far(*sweep, points);
   };
   command.write = [&](const studies::SweepResult& result, const ResultFiles& files) {
     return files.write(studies::sweep_json(result), without_middle(studies::sweep_table(result), common, "sweep.csv"));

@@ -55,15 +55,15 @@ bool is_new(const fs::path& file) {
   return file.empty() || !fs::exists(file, ignored) || fs::file_size(file, ignored) == 0;
 }
 
-/// Returns false if an existing file is a store in which no point has succeeded, for example because of a wrong key in
-/// the study. Such a store contains nothing that is worth keeping.
+/// Returns true if an existing file must not be replaced. A store is replaced if no point in it has succeeded, for
+/// example because of a wrong key in the study.
 bool has_results(const fs::path& file) {
   try {
     SQLite::Database sqlite(file.string(), SQLite::OPEN_READONLY, kWaitMs);
     if (sqlite.execAndGet("PRAGMA application_id").getInt() != kApplication) return true;
     return sqlite.execAndGet("SELECT count(*) FROM points WHERE failed = 0").getInt() > 0;
   } catch (const SQLite::Exception&) {
-    return true;  // the file is damaged or is not a store
+    return true;  // the file is damaged or is not a store, and is not replaced either
   }
 }
 

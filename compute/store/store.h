@@ -56,10 +56,10 @@ enum class IfExists { refuse, resume, overwrite };
 class ResultStore {
  public:
   /// \param file name of an SQLite file; if it is empty, the store is in memory, and only this process can access it
-  /// \throw InputError if the file exists and `if_exists` is `refuse`, unless it is a store in which no point has
-  ///        succeeded; such a store is replaced. Also thrown if the file is to be replaced while another process uses
-  ///        it. Also thrown if an existing file is damaged, is not a store, belongs to another study or has a newer
-  ///        format. Nothing is written in any of these cases
+  /// \throw InputError if the file exists and `if_exists` is `refuse`. A store in which no point has succeeded is
+  ///     replaced instead. Also thrown if another process uses a file that is to be replaced. Also thrown if the file
+  ///     is damaged, is not a store, belongs to another study or has a newer format. Nothing is written in any of these
+  ///     cases
   /// \throw OutputError if the file cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);
   ~ResultStore();

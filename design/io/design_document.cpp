@@ -7,6 +7,8 @@
 #include "core/schema/writer.h"
 #include "design/file_names.h"
 #include "design/io/design_format.h"
+#include "design/io/groove_reader.h"
+#include "design/mesh_keys.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/outline/plan_region.h"
@@ -67,13 +69,13 @@ void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant&
   set_cant(keys, cant);
 }
 
-/// Returns the outline of the array or of a round cube corner. Returns null if there is no outline.
+/// Returns the outline of an array or of a round cube corner, or null if the design has no outline.
 const geometry::PlanRegion* outline_of(const PartSpec& part) {
   const auto* const cube = std::get_if<RoundCube>(&part.element);
   return cube != nullptr ? cube->outline.get() : part.array.outline.get();
 }
 
-void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm) {
+void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm, bool is_hollow) {
   keys.set_word("kind", "round_icc");
   keys.set("diameter_mm", cube.diameter_mm);
   keys.set("length_mm", geometry::element_depth_mm(cube) + thickness_mm);
@@ -81,9 +83,10 @@ void set_round_cube(Keys& keys, const RoundCube& cube, double thickness_mm) {
   keys.set_positive("chamfer_mm", cube.chamfer_mm);
   keys.set_positive("recess_mm", cube.recess_mm);
   keys.set_positive("mount_diameter_mm", cube.mount_diameter_mm);
+  if (is_hollow) keys.set("hollow", true);
 }
 
-void set_element(Document& document, const PartSpec& part) {
+void set_element(Document& document, const PartSpec& part, bool is_hollow) {
   Keys keys(document, "element");
   std::visit(
       Overloaded{[&](const RtpElement& prism) {
@@ -94,7 +97,11 @@ void set_element(Document& document, const PartSpec& part) {
                  },
                  [&](const HexagonalCube& cube) { set_cube(keys, "hexagonal_icc", cube.aperture_mm, cube.cant); },
                  [&](const TriangularCube& cube) { set_cube(keys, "triangular_icc", cube.aperture_mm, cube.cant); },
-                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm); }},
+                 [&](const RoundCube& cube) { set_round_cube(keys, cube, part.thickness_mm, is_hollow); },
+                 [&](const geometry::RuledCells& ruled) {
+                   keys.set_word("kind", "ruled");
+                   set_grooves(document, ruled);
+                 }},
       part.element);
 }
 
@@ -156,9 +163,21 @@ void set_array(Document& document, const ElementArray& elements) {
     keys.set("overlap_percent", part.array.overlap_percent);
     keys.set_choice("shifted_rows", part.array.shifted_rows);
   }
+  if (elements.cell_spread) {
+    keys.set("depth_spread_nm", elements.cell_spread->depth_nm);
+    keys.set("spacing_spread_nm", elements.cell_spread->spacing_nm);
+  }
   if (!elements.mask) return;
   keys.set_word("mask", elements.mask->name);
   keys.set("mask_threshold", elements.mask->threshold);
+}
+
+void set_step_face(Keys& keys, const geometry::StepFace& face) {
+  keys.set_word("file", face.name);
+  keys.set_word("face", face.choice.face);
+  keys.set("sew_mm", face.choice.sew_mm);
+  if (face.choice.origin_mm) keys.set("origin_mm", list_of(*face.choice.origin_mm));
+  keys.set("rotation_deg", list_of(face.choice.rotation_deg));
 }
 
 void set_substrate(Document& document, const Substrate& substrate) {
@@ -174,7 +193,8 @@ void set_substrate(Document& document, const Substrate& substrate) {
                         },
                         [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
                         [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); },
-                        [&](const geometry::OffsetSubstrate& offset) { keys.set("wall_mm", offset.wall_mm); }},
+                        [&](const geometry::OffsetSubstrate& offset) { keys.set("wall_mm", offset.wall_mm); },
+                        [&](const geometry::StepFace& face) { set_step_face(keys, face); }},
              substrate.shape);
   if (std::holds_alternative<geometry::OffsetSubstrate>(substrate.shape)) return;
   keys.set_word("element_axes", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
@@ -238,20 +258,25 @@ void set_zones(Document& document, const ZonedPart& part) {
 /// Sets the tables that describe the shape.
 void set_shape(Document& document, const Design& design) {
   std::visit(Overloaded{[&](const ElementArray& array) {
-                          set_element(document, array.part);
+                          set_element(document, array.part, design.substance.is_hollow);
                           set_array(document, array);
                           if (array.part.substrate) set_substrate(document, *array.part.substrate);
                           if (array.facet_planes) Keys(document, "part").set_word("facets", array.facet_planes->name);
                         },
                         [&](const PartMesh& mesh) {
+                          const MeshKeys keys = mesh_keys_of(design);
                           Keys part(document, "part");
-                          part.set_word("mesh", mesh.name);
-                          part.set("scale", mesh_scale(design, "part"));
+                          part.set_word(keys.is_solid ? "solid" : "mesh", mesh.name);
+                          part.set("rotate_deg", list_of(keys.rotate_deg));
+                          part.set_choice("facing", keys.faces_down ? 1 : 0);
+                          if (keys.is_solid) return part.set("chord_mm", keys.chord_mm);
+                          part.set("scale", keys.scale);
+                          part.set("weld_mm", keys.weld_mm);
                           part.set("allow_open", mesh.allow_open);
                         },
                         [&](const Plate& plate) { Keys(document, "part").set("plate_mm", list_of(plate.size_mm)); },
                         [&](const ZonedPart& part) {
-                          set_element(document, part.base);
+                          set_element(document, part.base, false);
                           set_array(document, {part.base, {}, {}, part.outline});
                           set_zones(document, part);
                         },
@@ -268,12 +293,13 @@ void set_entrance_form(Keys& keys, const EntranceForm& form) {
                    keys.set("conics", list_of(biconic.conics));
                  },
                  [&](const geometry::FormulaEntrance& formula) { keys.set_word("formula", formula.height_mm->text); },
+                 [&](const geometry::StepFace& face) { set_step_face(keys, face); },
                  [&](const auto& conical) {
                    keys.set("radius_mm", conical.radius_mm);
                    keys.set("conic", conical.conic);
                  }},
       form.shape);
-  keys.set("rotation_deg", form.rotation_deg);
+  if (!std::holds_alternative<geometry::StepFace>(form.shape)) keys.set("rotation_deg", form.rotation_deg);
   keys.set("incidence_deg", form.inclination.incidence_deg);
   keys.set("azimuth_deg", form.inclination.azimuth_deg);
   if (form.has_pin_angle) keys.set("pin_angle_deg", form.inclination.pin_angle_deg);
@@ -313,16 +339,20 @@ bool is_below_entrance(const Design& design) {
          std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape);
 }
 
+void set_material(Keys& keys, const Substance& substance) {
+  keys.set_word("material", substance.material);
+  if (substance.catalogue) keys.set_word("catalogue", substance.catalogue->name);
+  if (substance.refractive_index) keys.set("refractive_index", *substance.refractive_index);
+  if (substance.temperature_c) keys.set("temperature_c", *substance.temperature_c);
+  if (const Value absorption = absorption_value(substance.absorption_per_mm); absorption.index() != 0)
+    keys.set("absorption_per_mm", absorption);
+}
+
 void set_body(Document& document, const Design& design) {
   Keys keys(document, "body");
   const bool is_round = design.elements() != nullptr && std::holds_alternative<RoundCube>(design.part().element);
   if (!is_below_entrance(design) && !is_round) keys.set_positive("thickness_mm", design.thickness_mm());
-  keys.set_word("material", design.substance.material);
-  if (design.substance.catalogue) keys.set_word("catalogue", design.substance.catalogue->name);
-  if (design.substance.refractive_index) keys.set("refractive_index", *design.substance.refractive_index);
-  if (design.substance.temperature_c) keys.set("temperature_c", *design.substance.temperature_c);
-  if (const Value absorption = absorption_value(design.substance.absorption_per_mm); absorption.index() != 0)
-    keys.set("absorption_per_mm", absorption);
+  if (!design.substance.is_hollow) set_material(keys, design.substance);
   if (design.surface.coating.has_only_aluminium_on_facets()) keys.set_word("facet_coating", "aluminium");
   if (design.substance.back_index != 1.0) keys.set("back_index", design.substance.back_index);
 }
@@ -447,6 +477,7 @@ void set_light(Document& document, const Design& design) {
 }
 
 void set_angle_errors(Keys& keys, const PartSpec& part) {
+  if (std::holds_alternative<geometry::RuledCells>(part.element)) return;
   const auto& [dihedral, tilt] = part.angle_errors;
   const bool is_prism = std::holds_alternative<RtpElement>(part.element);
   keys.set("dihedral_error_arcmin", is_prism ? Value(dihedral[0]) : list_of(dihedral));

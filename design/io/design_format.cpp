@@ -2,6 +2,7 @@
 
 #include "design/io/design_rows.h"
 #include "design/io/design_rules.h"
+#include "design/io/groove_rows.h"
 #include "geometry/io/substrate_rows.h"
 
 namespace retrace::design {
@@ -12,17 +13,19 @@ using namespace schema;
 constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
 constexpr Condition kNoMesh =
     is_absent("part.mesh", "not allowed together with part.mesh, because part.mesh describes the whole part");
+constexpr Condition kNoSolid =
+    is_absent("part.solid", "not allowed together with part.solid, because part.solid describes the whole part");
 constexpr Condition kNoPlate = is_absent(
     "part.plate_mm", "not allowed together with part.plate_mm, because part.plate_mm describes the whole part");
 
-constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
-constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
+constexpr Condition kWithElements[] = {kNoMesh, kNoSolid, kNoPlate};
+constexpr Condition kWithPlanes[] = {kNoMesh, kNoSolid, kNoPlate, kTableOfNoBall};
 constexpr Condition kPartTable[] = {kTableOfNoBall};
 constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", whose surfaces are smooth")};
-constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                        is(kKind, kRtp)};
+constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                        is_absent("part.plate_mm", kNotWithMesh), is(kKind, kRtp)};
 
 const Table kSurfaceTables[] = {
     {.name = "scratches",
@@ -68,6 +71,7 @@ const Table kCoatingTables[] = {{.name = "facets",
                                  .when = kEntranceTable}};
 
 constexpr Condition kWithZones[] = {kNoMesh,
+                                    kNoSolid,
                                     kNoPlate,
                                     kTableOfNoBall,
                                     is_absent("substrate", "not allowed together with [substrate]"),
@@ -75,11 +79,12 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("form", "not allowed together with [form]"),
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
-constexpr Condition kWithOutline[] = {kNoMesh, kNoPlate, kTableOfNoBall,
+constexpr Condition kWithOutline[] = {kNoMesh, kNoSolid, kNoPlate, kTableOfNoBall,
                                       is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\"")};
-constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};
-constexpr Rule kOutlineRules[] = {OneOf{
-    kOutlineBorders, "must contain exactly one of the keys polygon_mm, circle_mm and dxf, which determine its border"}};
+constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf", "file"};
+constexpr Rule kOutlineRules[] = {
+    OneOf{kOutlineBorders,
+          "must contain exactly one of the keys polygon_mm, circle_mm, dxf and file, which determine its border"}};
 constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
                                                "columns",       "mask",          "rest"};
 constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,
@@ -99,6 +104,19 @@ const Table kEntranceFaceTables[] = {
      .layout = Layout::in_line,
      .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
 
+constexpr Condition kRuledOnly[] = {kNoMesh, kNoPlate,
+                                    is(kKind, geometry::kRuled, "only allowed for element.kind = \"ruled\"")};
+/// Returns the description of the table of one groove set.
+Table groove_table(std::size_t number) {
+  return {.name = kGrooveSets[number],
+          .meaning =
+              "Set of parallel grooves. The form `custom` has two to four sets, a to d. In the other forms, which "
+              "have the sets a, b and c, the table changes the set that the form determines.",
+          .rows = groove_set_rows(),
+          .presence = Presence::optional};
+}
+const Table kGrooveTables[] = {groove_table(0), groove_table(1), groove_table(2), groove_table(3)};
+
 constexpr Row kRootRows[] = {
     {"title", Text{}, kNone, "Title of the design. It is used as the name of the design's curves in plots."}};
 const Table kTables[] = {
@@ -107,6 +125,13 @@ const Table kTables[] = {
      .rows = element_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
+    {.name = "grooves",
+     .meaning = "Grooves of ruled cells. In the part frame, the surface is the upper envelope of the groove faces, and "
+                "the bottoms of the deepest grooves are on z = 0.",
+     .rows = groove_rows(),
+     .tables = kGrooveTables,
+     .presence = Presence::optional,
+     .when = kRuledOnly},
     {.name = "array",
      .meaning = "Arrangement of the elements over the part.",
      .rows = array_rows(),
@@ -134,7 +159,7 @@ const Table kTables[] = {
      .presence = Presence::list,
      .when = kWithZones},
     {.name = "part",
-     .meaning = "Mesh or plate that replaces the elements, or planes of individual facets.",
+     .meaning = "Mesh, solid or plate that replaces the elements, or planes of individual facets.",
      .rows = part_rows(),
      .presence = Presence::optional,
      .when = kPartTable},

@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "core/schema/json.h"
 #include "design/io/design_document.h"
+#include "geometry/elements/ruled_pattern.h"
 
 namespace retrace::design {
 namespace {
@@ -24,6 +25,9 @@ struct ElementName {
   }
   std::string operator()(const TriangularCube& e) const {
     return fmt::format("triangular ICC {} mm", fixed(e.aperture_mm, 3));
+  }
+  std::string operator()(const RuledCells& e) const {
+    return fmt::format("ruled cells of {} groove sets", e.pattern->sets.size());
   }
   std::string operator()(const RoundCube& e) const { return fmt::format("round ICC {} mm", fixed(e.diameter_mm, 3)); }
 };

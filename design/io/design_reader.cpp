@@ -19,6 +19,7 @@
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"
+#include "design/step_faces.h"
 #include "materials/io/index_record.h"
 
 namespace retrace::design {
@@ -33,7 +34,8 @@ std::array<double, 2> pair_of(const Document& document, std::string_view key) {
 }
 
 PartMesh read_mesh(const Document& document) {
-  return {document.text("part.mesh"), document.file("part.mesh"), document.flag("part.allow_open"),
+  const std::string_view key = document.has("part.solid") ? "part.solid" : "part.mesh";
+  return {document.text(key), document.file(key), document.has("part.mesh") && document.flag("part.allow_open"),
           document.number_if("body.thickness_mm")};
 }
 
@@ -43,13 +45,15 @@ ElementArray read_elements(const Document& document) {
     array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
   if (constexpr std::string_view facets = "part.facets"; document.has(facets))
     array.facet_planes = {document.text(facets), document.file(facets)};
+  if (const auto depth_nm = document.number_if("array.depth_spread_nm"))
+    array.cell_spread = {*depth_nm, document.number("array.spacing_spread_nm")};
   return array;
 }
 
 Shape read_shape(const Document& document) {
   if (document.has("part.plate_mm"))
     return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
-  if (document.has("part.mesh")) return read_mesh(document);
+  if (document.has("part.mesh") || document.has("part.solid")) return read_mesh(document);
   if (has_zones(document)) return read_zones(document);
   if (has_elements(document)) return read_elements(document);
   return read_balls(document);
@@ -253,7 +257,7 @@ std::vector<OuterShell> read_shells(const Document& document) {
   return shells;
 }
 
-/// Returns the design of a document. Files that are named in the document are not read.
+/// Returns the design of a document. Of the files that are named in the document, only DXF and STEP files are read.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
   schema::check(document, design_format().root, "", &document);
@@ -270,6 +274,7 @@ Design resolved(std::shared_ptr<const Document> given) {
                       read_absorption(document, "body.absorption_per_mm"),
                       document.number("body.back_index")};
   if (document.has("element.hollow") && document.flag("element.hollow")) {
+    design.substance.is_hollow = true;
     design.substance.material = "air";
     design.substance.refractive_index = 1.0;
     design.substance.absorption_per_mm = 0.0;
@@ -282,6 +287,7 @@ Design resolved(std::shared_ptr<const Document> given) {
                          document.text("idealisation.entrance") == "lossless"};
   design.document = std::move(given);
   find_pin_angle(design);
+  read_step_faces(design);
   find_offset(design);
   return design;
 }
@@ -311,7 +317,7 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// Keys whose values are names of files. A store of study results lists the files of a design in this order and is
 /// valid only for this list. New keys must therefore be appended at the end.
-constexpr std::array<std::string_view, 10> kFilesOfStores = {"part.mesh",
+constexpr std::array<std::string_view, 14> kFilesOfStores = {"part.mesh",
                                                              "array.mask",
                                                              "surface.height_map",
                                                              "part.facets",
@@ -320,7 +326,11 @@ constexpr std::array<std::string_view, 10> kFilesOfStores = {"part.mesh",
                                                              "entrance_surface.mesh",
                                                              "body.catalogue",
                                                              "form.map",
-                                                             "outline.dxf"};
+                                                             "outline.dxf",
+                                                             "outline.file",
+                                                             "entrance_surface.file",
+                                                             "substrate.file",
+                                                             "part.solid"};
 
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides) {

@@ -48,9 +48,9 @@ inline constexpr schema::Words kSingle = {"single"};
 inline constexpr schema::Words kInfinite = {"infinite"};
 
 inline constexpr std::string_view kScaleMeaning =
-    "Factor that converts the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
+    "Factor that converts the unit of the mesh to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
     "micrometres.";
 inline constexpr std::string_view kNotWithMesh =
-    "not allowed together with a mesh or plate in [part], which determines all angles and edges";
+    "not allowed together with a mesh, solid or plate in [part], which determines all angles and edges";
 
 }  // namespace retrace::design

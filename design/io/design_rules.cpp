@@ -12,6 +12,7 @@
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
 #include "design/io/entrance_checks.h"
+#include "design/io/groove_reader.h"
 #include "design/io/optics_checks.h"
 #include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
@@ -19,6 +20,7 @@
 #include "design/io/zone_reader.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/substrate_checks.h"
 #include "geometry/io/substrate_rows.h"
 
@@ -81,9 +83,14 @@ struct FootprintOf {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// Returns the footprint of the circular face.
+  /// Returns the footprint of a round cube corner, which is its circular face.
   Footprint operator()(const RoundCube& cube) const {
     return {cube.diameter_mm, cube.diameter_mm, 0.25 * std::numbers::pi * cube.diameter_mm * cube.diameter_mm};
+  }
+  /// Returns the bounding box of the largest cell and the mean area of the cells.
+  Footprint operator()(const geometry::RuledCells& ruled) const {
+    const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(ruled)).size();
+    return {size.x(), size.y(), ruled.pattern->mean_cell_mm2};
   }
   /// Returns the footprint of a triangle whose apex is at the centre of the part. A vertex of the triangle is on the x
   /// axis, one radius from the apex. The part therefore extends over two radii along x.
@@ -137,8 +144,8 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
 }
 
-/// Checks that a design with a curved entrance face has a convex outline without holes. Also checks that a single
-/// element has no outline, unless it is a round cube corner.
+/// Checks that the outline behind a curved entrance face is convex and has no holes. Also checks that single elements
+/// have no outline; only round cube corners may have one.
 void check_outline(const Document& document, const PartSpec& part) {
   if (has_outline(document) && part.array.arrangement == Arrangement::single &&
       !std::holds_alternative<RoundCube>(part.element))
@@ -148,7 +155,7 @@ void check_outline(const Document& document, const PartSpec& part) {
                 "must be a convex outline without holes if the design has a table [entrance_surface]");
 }
 
-/// Returns the key by which a design gives the errors of the dihedral angles.
+/// Returns the key with which the design specifies the errors of the dihedral angles.
 std::string_view dihedral_key(const Document& document) {
   return document.has(kDihedralErrorArcsec) ? kDihedralErrorArcsec : kDihedralErrorArcmin;
 }
@@ -315,8 +322,11 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
     document.fail(
         key,
         "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
-  // A substrate below the entrance surface is checked later, by find_offset(), after the surface has been read.
-  if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape)) return;
+  // A substrate below the entrance surface or in a file is checked after the surface or the file has been read, by
+  // find_offset() or read_step_faces().
+  if (std::holds_alternative<geometry::OffsetSubstrate>(part.substrate->shape) ||
+      std::holds_alternative<geometry::StepFace>(part.substrate->shape))
+    return;
   try {
     geometry::check_substrate(part);
   } catch (const InputError& error) {
@@ -326,7 +336,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
 
 /// Checks that the plate is thick enough to cover the highest points of the elements.
 void check_thickness(const Document& document, const PartSpec& part) {
-  if (std::holds_alternative<RoundCube>(part.element)) return;  // see check_length_of_round_cube()
+  if (std::holds_alternative<RoundCube>(part.element)) return;  // check_length_of_round_cube() checks the thickness
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = min_thickness_mm(part);
   if (part.thickness_mm < least_mm)
@@ -337,7 +347,9 @@ void check_thickness(const Document& document, const PartSpec& part) {
 }
 
 void check_bowl(const Document& document) {
-  if (document.has("part.mesh") || document.has("part.plate_mm") || has_elements(document)) return;
+  if (document.has("part.mesh") || document.has("part.solid") || document.has("part.plate_mm") ||
+      has_elements(document))
+    return;
   const double most_deg = read_balls(document).max_mirror_half_angle_deg();
   const auto given_deg = document.number_if("element.mirror_half_angle_deg");
   if (given_deg && *given_deg > most_deg + 1e-9)
@@ -387,9 +399,9 @@ void check_form(const Document& document) {
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
-constexpr schema::Words kOutlineKeys = {"outline.polygon_mm",      "outline.circle_mm",        "outline.dxf",
-                                        "outline.side_sagitta_mm", "outline.corner_radius_mm", "outline.holes_mm",
-                                        "outline.margin_mm",       "outline.tolerance_mm"};
+constexpr schema::Words kOutlineKeys = {"outline.polygon_mm", "outline.circle_mm",       "outline.dxf",
+                                        "outline.file",       "outline.side_sagitta_mm", "outline.corner_radius_mm",
+                                        "outline.holes_mm",   "outline.margin_mm",       "outline.tolerance_mm"};
 constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
                                                  "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralErrorArcmin, kDihedralErrorArcsec};
@@ -447,8 +459,27 @@ constexpr schema::Words kEntranceKeys = {"entrance_surface.kind",      "entrance
                                          "entrance_surface.mesh",      "array.extent",
                                          "entrance_surface.radius_mm", "entrance_surface.radii_mm"};
 
+constexpr schema::Words kGrooveKeys = {"grooves.form",       "grooves.base_angles_deg", "grooves.depth_mm",
+                                       "grooves.spacing_mm", "grooves.bottom_flat_um",  "grooves.bottom_radius_um",
+                                       "array.extent"};
+constexpr schema::Words kRuledKeys = {
+    "surface.dihedral_error_arcmin", "surface.facet_tilt_arcmin", kRandomTilt,
+    "surface.root_radius_um",        "surface.root_chamfer_um",   "surface.rim_radius_um",
+    "surface.rim_chamfer_um",        "array.partial_elements",    "part.facets"};
+
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
+    schema::Check{kGrooveKeys,
+                  "The grooves of ruled cells must leave cells, and their bottoms must be narrower than the spacing. "
+                  "The base angles add up to 180 degrees. In an infinite array, the grooves must have a common period "
+                  "along x and y with at most 1000 cells.",
+                  check_by<check_grooves>},
+    schema::Check{
+        kRuledKeys,
+        "Ruled cells have no angle errors, rims or random tilts in `[surface]`, because `[grooves]` describes "
+        "their faces. Roots may be rounded if every cell has three faces and nothing else. The border cuts "
+        "the cells. A table of planes, a `[substrate]` and a `[form]` are not allowed.",
+        check_by<of_part<check_ruled_part>>},
     schema::Check{kSquareKeys, "Elements of the arrangement `checker` are square: `base_mm` equals `width_mm`.",
                   check_by<of_array<check_square>>},
     schema::Check{

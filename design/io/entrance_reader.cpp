@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "design/io/step_choice_reader.h"
 #include "design/light_and_index.h"
 
 namespace retrace::design {
@@ -34,13 +35,15 @@ geometry::EntranceShape read_entrance_shape(const Document& document) {
   if (kind == "formula")
     return geometry::parse_entrance_formula(document.text(key_in_surface("formula")),
                                             document.where(key_in_surface("formula")));
+  if (kind == "step") return read_step_face(document, "entrance_surface");
   return geometry::PlaneEntrance{};
 }
 
 EntranceForm read_entrance_form(const Document& document) {
   EntranceForm form;
   form.shape = read_entrance_shape(document);
-  form.rotation_deg = document.number(key_in_surface("rotation_deg"));
+  if (!std::holds_alternative<geometry::StepFace>(form.shape))
+    form.rotation_deg = document.number(key_in_surface("rotation_deg"));
   form.inclination.incidence_deg = document.number(key_in_surface("incidence_deg"));
   form.inclination.azimuth_deg = document.number(key_in_surface("azimuth_deg"));
   const std::optional<double> pin_angle_deg = document.number_if(key_in_surface("pin_angle_deg"));

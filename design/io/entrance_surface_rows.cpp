@@ -1,5 +1,6 @@
 #include "design/io/design_rows.h"
 #include "geometry/entrance/entrance_shape.h"
+#include "geometry/io/step_rows.h"
 
 namespace retrace::design {
 namespace {
@@ -22,11 +23,14 @@ constexpr Condition kMeshOnlyKeys[] = {is_given("mesh")};
 constexpr Condition kFormGiven[] = {is_given("kind")};
 constexpr Condition kConicalOnly[] = {is("kind", only(geometry::kEntranceKinds, "cylinder", "sphere"))};
 constexpr Condition kBiconicOnly[] = {is("kind", only(geometry::kEntranceKinds, "biconic"))};
+constexpr Condition kAllButStep[] = {is("kind", only(geometry::kEntranceKinds, "plane", "formula"))};
+constexpr Condition kStepOnly[] = {is("kind", only(geometry::kEntranceKinds, "step"))};
 constexpr Condition kFormulaOnly[] = {is("kind", only(geometry::kEntranceKinds, "formula"))};
 
 constexpr Row kEntranceRows[] = {
     {"kind", Word{geometry::kEntranceKinds}, kNone,
-     "Shape of the entrance surface, if it is not given by a file. `\"biconic\"` has different radii along x and y.",
+     "Shape of the entrance surface, if it is not given by a mesh or a turned part. `\"biconic\"` has different radii "
+     "along x and y. `\"step\"` is a face of a STEP file.",
      kFormOnly},
     {"radius_mm", Number{kRadiusOfFace}, kRequired,
      "Radius of curvature at the vertex, not 0. If it is positive, the surface is convex towards the light; if it is "
@@ -41,7 +45,12 @@ constexpr Row kEntranceRows[] = {
      "Height of the surface in mm, positive towards the light, as a formula of `x`, `y`, `r` and `theta` (in mm and "
      "rad), measured from the origin of the surface. The formula has the same elements as `substrate.sag_mm`.",
      kFormulaOnly},
-    {"rotation_deg", Number{kAzimuth}, 0.0, "Rotation of the surface about its axis, from +x towards +y.", kFormGiven},
+    where(geometry::kStepFileRow, kStepOnly),
+    where(geometry::kStepFaceRow, kStepOnly),
+    where(geometry::kStepSewRow, kStepOnly),
+    where(geometry::kStepOriginRow, kStepOnly),
+    where(geometry::kStepRotationRow, kStepOnly),
+    {"rotation_deg", Number{kAzimuth}, 0.0, "Rotation of the surface about its axis, from +x towards +y.", kAllButStep},
     {"incidence_deg", Number{kInclinationDeg}, 0.0,
      "Angle between the reference axis (the axis of the vehicle, H = V = 0 in photometry) and the axis of the surface, "
      "which is its normal at the origin.",

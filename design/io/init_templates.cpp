@@ -78,7 +78,7 @@ length_mm = 19                    # from the apex to the face; or edge_length_mm
 material = "fused-silica"         # `retrace list materials` shows the available materials
 )";
 
-/// Last keys of [array], and first keys of [body].
+/// Last keys of the table [array] and first keys of the table [body] in templates.
 constexpr std::string_view kArrayTail = R"(# x_offset_mm = 0                 # flat margin at both ends in x
 # y_offset_mm = 0
 # extent = "finite"               # "infinite" is one periodic cell, without x_length_mm and y_length_mm

@@ -32,8 +32,10 @@ constexpr Words kFacets = {"-x", "+x"};
 constexpr Words kOffsetKind = {"offset"};
 
 constexpr Condition kThicknessOfMesh[] = {is_not(kKind, kBall), is_given("part.mesh")};
+constexpr Condition kThicknessOfSolid[] = {is_not(kKind, kBall), is_given("part.solid")};
 constexpr Condition kThicknessOfOthers[] = {
     is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has no plate"), is_absent("part.mesh"),
+    is_absent("part.solid"),
     is_not("substrate.kind", kOffsetKind,
            "not allowed for substrate.kind = \"offset\", whose elements are substrate.wall_mm below the entrance "
            "surface"),
@@ -57,6 +59,8 @@ constexpr Row kBodyRows[] = {
      kThicknessOfOthers},
     {"thickness_mm", kSize, kNone,
      "Thickness of the plate. If this key is given, it must equal the thickness of the mesh.", kThicknessOfMesh},
+    {"thickness_mm", kSize, kNone,
+     "Thickness of the plate. If this key is given, it must equal the thickness of the solid.", kThicknessOfSolid},
     {"material", Text{}, "PMMA", "Name of the material. `retrace list materials` shows the available names."},
     {"catalogue", File{"a glass catalogue"}, kNone,
      "Glass catalogue in the AGF format, as published by glass makers. `material` is then the name of a glass in the "
@@ -181,15 +185,17 @@ constexpr Row kDetectorRows[] = {
     {"acceptance_half_angle_deg", NumberOrNumbers{{.low = 0.0, .low_included = false, .high = 90.0}}, 0.5,
      "Half-angle of the acceptance cone, in air. For a list, the RRE of each half-angle is computed."}};
 
-constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                       is(kKind, kRtp)};
-constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-                                      is(kKind, geometry::kCubeKindsOfDesigns)};
+constexpr Condition kErrorOfPrism[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                       is_absent("part.plate_mm", kNotWithMesh), is(kKind, kRtp)};
+constexpr Condition kErrorOfCube[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                      is_absent("part.plate_mm", kNotWithMesh),
+                                      is(kKind, only(geometry::kElementKinds, "hexagonal_icc", "ruled"))};
 constexpr Condition kArcsecOfCube[] = {
-    is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
-    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
+    is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+    is_absent("part.plate_mm", kNotWithMesh), is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners"),
     is_absent("surface.dihedral_error_arcmin", "not allowed together with dihedral_error_arcmin")};
-constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh)};
+constexpr Condition kErrors[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.solid", kNotWithMesh),
+                                 is_absent("part.plate_mm", kNotWithMesh)};
 constexpr Condition kModelOfMap[] = {is_given("height_map")};
 constexpr Condition kModelOfOthers[] = {is_absent("height_map")};
 constexpr Condition kAbgOnly[] = {is("model", kAbg)};

@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "design/io/design_rows.h"
+#include "design/io/step_choice_reader.h"
 #include "geometry/io/dxf_outline.h"
+#include "geometry/io/step_reader.h"
 
 namespace retrace::design {
 namespace {
@@ -21,6 +24,7 @@ using geometry::OutlineFault, geometry::OutlineLoop, geometry::PlanRegion, geome
 constexpr std::string_view kPolygon = "outline.polygon_mm";
 constexpr std::string_view kCircle = "outline.circle_mm";
 constexpr std::string_view kDxf = "outline.dxf";
+constexpr std::string_view kStep = "outline.file";
 constexpr std::string_view kSagitta = "outline.side_sagitta_mm";
 constexpr std::string_view kCornerRadius = "outline.corner_radius_mm";
 constexpr std::string_view kHoles = "outline.holes_mm";
@@ -78,7 +82,8 @@ OutlineLoop circle_of(const Document& document, std::string_view key, const std:
   return geometry::circle({values[0], values[1]}, values[2]);
 }
 
-/// Returns the loops that the document describes: the outer border, and also the holes if the outline is a DXF file.
+/// Returns the loops that the document describes: the outer border, and also the holes if the outline is a DXF or
+/// STEP file.
 std::vector<OutlineLoop> border_of(const Document& document) {
   if (document.has(kDxf)) {
     const std::filesystem::path file = document.file(kDxf);
@@ -86,6 +91,9 @@ std::vector<OutlineLoop> border_of(const Document& document) {
                                               document.number_if("outline.dxf_scale")};
     return geometry::parse_dxf_outline(read_file(file, geometry::kMaxDxfBytes), file.string(), selection);
   }
+  if (document.has(kStep))
+    return read_named(document.where(kStep),
+                      [&] { return geometry::read_step_outline(read_step_face(document, "outline").choice); });
   if (document.has(kCircle)) return {circle_of(document, kCircle, document.numbers(kCircle))};
   return {polygon_of_outline(document)};
 }
@@ -107,7 +115,9 @@ bool has_outline(const Document& document) {
 }
 
 std::string_view outline_key(const Document& document) {
-  return document.has(kDxf) ? kDxf : document.has(kCircle) ? kCircle : kPolygon;
+  for (const std::string_view key : {kDxf, kStep, kCircle})
+    if (document.has(key)) return key;
+  return kPolygon;
 }
 
 OutlineKeys outline_keys(const Document& document) {
@@ -117,7 +127,8 @@ OutlineKeys outline_keys(const Document& document) {
     if (document.has(path) && path != kMargin && path != kTolerance)
       keys.values.emplace_back(row.key, document.value(path));
   }
-  if (document.has(kDxf)) keys.dxf = document.file(kDxf);
+  for (const std::string_view key : {kDxf, kStep})
+    if (document.has(key)) keys.file = document.file(key);
   return keys;
 }
 

@@ -18,7 +18,7 @@ std::string_view outline_key(const schema::Document& document);
 /// Returns the keys that describe the outline. Returns an object without keys if the part has no outline.
 OutlineKeys outline_keys(const schema::Document& document);
 
-/// Reads the outline of a part, including its DXF file if there is one.
+/// Reads the outline of a part, including its DXF or STEP file if there is one.
 /// \pre has_outline()
 /// \throw InputError if the outline is open or crosses itself, if a hole is not inside the outline, or if a radius or
 ///     the margin is too large

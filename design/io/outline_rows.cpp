@@ -1,4 +1,5 @@
 #include "design/io/design_rows.h"
+#include "geometry/io/step_rows.h"
 
 namespace retrace::design {
 namespace {
@@ -9,6 +10,12 @@ constexpr NumberRange kCoordinate{.low = -1e6, .high = 1e6};
 constexpr NumberRange kRadius{.low = 0.0, .high = 1e6};
 constexpr Condition kOfPolygon[] = {is_given("polygon_mm", "only allowed together with polygon_mm")};
 constexpr Condition kOfDxf[] = {is_given("dxf", "only allowed together with dxf")};
+
+constexpr Condition kOfStep[] = {is_given("file", "only allowed together with file")};
+constexpr Row kStepOutlineRow = {
+    "file", File{"a STEP file"}, kNone,
+    "STEP file (AP203, AP214 or AP242). The outline is the border of the selected faces, projected along z. The loop "
+    "that encloses the largest area is the border, and the others are holes."};
 
 constexpr Row kOutlineRows[] = {
     {"polygon_mm", NumberRows{2, kCoordinate, 3, 1000, "points"}, kNone,
@@ -31,6 +38,10 @@ constexpr Row kOutlineRows[] = {
     {"dxf_layer", Text{}, Computed{"all layers"}, "Layer of the DXF file that contains the outline.", kOfDxf},
     {"dxf_scale", kSize, Computed{"1 if the file has no unit ($INSUNITS), otherwise the length of its unit in mm"},
      "Factor that converts the unit of the DXF file to mm.", kOfDxf},
+    kStepOutlineRow,
+    where(geometry::kStepFaceRow, kOfStep),
+    where(geometry::kStepSewRow, kOfStep),
+    where(geometry::kStepRotationRow, kOfStep),
     {"holes_mm", NumberRows{3, kCoordinate, 1, 100, "holes"}, kNone,
      "`[[x, y, radius], ...]`: round holes through the part, in the coordinates of the outline."},
     {"margin_mm", Number{kRadius}, 0.0, "Width of a flat strip without elements along the border and the holes."},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/schema/reader.h"
+#include "design/io/groove_reader.h"
 #include "design/io/outline_reader.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/io/element_keys.h"
@@ -33,6 +34,7 @@ geometry::Element element_of(const Document& document) {
   if (kind == "rtp")
     return geometry::RtpElement{document.number("element.base_mm"), document.number("element.width_mm"),
                                 document.number("element.apex_angle_deg")};
+  if (kind == "ruled") return read_grooves(document);
   const geometry::Cant cant{document.number("element.cant_deg"), document.number("element.cant_azimuth_deg")};
   if (kind == "round_icc") return round_cube_of(document, cant);
   const double aperture_mm = document.number("element.aperture_mm");
@@ -79,8 +81,8 @@ geometry::Scratch scratch_of(const Document& document, const std::string& entry)
   return scratch;
 }
 
-/// Returns the thickness of the plate above z = 0 for a round cube corner. The highest points of its nominal facets are
-/// at z = 0. If the design gives no length, the plate has its minimum thickness.
+/// Returns the thickness of a round cube corner above z = 0, the height of the highest facet points. If the design
+/// gives no length, the plate has its minimum thickness.
 double plate_of_round_cube_mm(const Document& document, const PartSpec& part) {
   const double depth_mm = geometry::element_depth_mm(part.element, part.angle_errors);
   if (const auto length_mm = document.number_if("element.length_mm")) return *length_mm - depth_mm;
@@ -101,7 +103,8 @@ void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
 }  // namespace
 
 bool has_elements(const Document& document) {
-  return !document.has("part.mesh") && !document.has("part.plate_mm") && document.text("element.kind") != "ball";
+  return !document.has("part.mesh") && !document.has("part.solid") && !document.has("part.plate_mm") &&
+         document.text("element.kind") != "ball";
 }
 
 double min_thickness_mm(const PartSpec& part) {
@@ -140,6 +143,9 @@ PartSpec read_part(const Document& document) {
   if (document.has("substrate"))
     schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::design_substrate_rows()}, "substrate",
                  &part.substrate.emplace());
+  if (part.substrate)
+    if (auto* const face = std::get_if<geometry::StepFace>(&part.substrate->shape))
+      face->choice.file = document.file("substrate.file");
   read_angle_errors(document, part);
   read_edges(document, part.edges);
   for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)

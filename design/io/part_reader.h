@@ -13,11 +13,12 @@ namespace retrace::design {
 /// Returns true if the design is an array of elements, and not a mesh, a plate or balls.
 bool has_elements(const schema::Document& document);
 
-/// Keys of the errors of dihedral angles. A design contains at most one of these keys.
+/// Keys that specify the errors of the dihedral angles. A design may contain only one of them.
 inline constexpr std::string_view kDihedralErrorArcmin = "surface.dihedral_error_arcmin";
 inline constexpr std::string_view kDihedralErrorArcsec = "surface.dihedral_error_arcsec";
 
-/// Returns the minimum thickness of the plate. A plate of this thickness covers the highest points of the elements.
+/// Returns the minimum thickness of the plate above z = 0. With this thickness, the entrance face is above the highest
+/// points of all elements.
 double min_thickness_mm(const geometry::PartSpec& part);
 
 /// Reads the elements and the array of a design, without errors, edges and base.

@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks of the keys of cube corners with a circular face (`element.kind = "round_icc"`).
+// Checks of designs of cube corners with a circular face (`element.kind = "round_icc"`).
 
 #include <cstddef>
 #include <string_view>
@@ -10,14 +10,22 @@
 
 namespace retrace::design {
 
-/// Keys of check_length_of_round_cube().
+/// Keys that check_length_of_round_cube() checks.
 inline constexpr std::string_view kRoundLengthKeys[] = {"element.length_mm", "element.edge_length_mm"};
-/// Keys of check_face_of_round_cube().
-inline constexpr std::string_view kRoundFaceKeys[] = {
-    "element.chamfer_mm",     "element.recess_mm", "element.mount_diameter_mm", "surface.rim_radius_um",
-    "surface.rim_chamfer_um", "part.facets",       "outline.margin_mm",         "outline.holes_mm",
-    "outline.polygon_mm",     "outline.dxf"};
-/// Keys of check_hollow(). The kRefusedKeysOfHollow keys after the first are not allowed for hollow cube corners.
+/// Keys that check_face_of_round_cube() checks.
+inline constexpr std::string_view kRoundFaceKeys[] = {"element.chamfer_mm",
+                                                      "element.recess_mm",
+                                                      "element.mount_diameter_mm",
+                                                      "surface.rim_radius_um",
+                                                      "surface.rim_chamfer_um",
+                                                      "part.facets",
+                                                      "outline.margin_mm",
+                                                      "outline.holes_mm",
+                                                      "outline.polygon_mm",
+                                                      "outline.dxf",
+                                                      "outline.file"};
+/// Keys that check_hollow() checks. The first key marks a hollow cube corner. The next kRefusedKeysOfHollow keys
+/// are not allowed for hollow cube corners.
 inline constexpr std::string_view kHollowKeys[] = {
     "element.hollow",      "body.material",          "body.catalogue",   "body.refractive_index",
     "body.temperature_c",  "body.absorption_per_mm", "coating.entrance", "entrance.film_coverage",
@@ -25,7 +33,8 @@ inline constexpr std::string_view kHollowKeys[] = {
 inline constexpr std::size_t kRefusedKeysOfHollow = 7;
 static_assert(kHollowKeys[kRefusedKeysOfHollow] == "entrance.film_coverage");
 
-/// Checks that the facets of a round cube corner reach the rim of its face, but do not cut the face.
+/// Checks the length of a round cube corner: the facets must reach the rim of the entrance face but must not cut the
+/// face.
 /// \throw InputError that names file, line and key
 void check_length_of_round_cube(const schema::Document& document, const geometry::PartSpec& part);
 
@@ -33,7 +42,7 @@ void check_length_of_round_cube(const schema::Document& document, const geometry
 /// \throw InputError that names file, line and key
 void check_face_of_round_cube(const schema::Document& document, const geometry::PartSpec& part);
 
-/// Checks that a hollow cube corner, which has no body and no face, gives no keys of a body or a face.
+/// Checks a hollow cube corner. It has neither a body nor an entrance face, so keys that describe them are not allowed.
 /// \throw InputError that names file, line and key
 void check_hollow(const schema::Document& document);
 

@@ -8,9 +8,11 @@ using namespace schema;
 constexpr Kind kGap = Number{{.low = 0.0, .high = 1e6}};
 constexpr geometry::SizeKeys kSizeKeys(kSize, kGap);
 constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
+constexpr NumberRange kCellSpread{.low = 0.0, .high = 1e6};
 
 constexpr Words kBallArrangements = {"single", "packed"};
 constexpr auto kPacked = only(kBallArrangements, "packed");
+constexpr auto kRuledArrangement = only(geometry::kArrangementWords, "ruled");
 constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
@@ -25,13 +27,16 @@ constexpr Condition kArrayOfNoBall =
 constexpr Condition kNotRound =
     is_not(kKind, geometry::kRoundCube, "not allowed for element.kind = \"round_icc\", which has diameter_mm");
 
+constexpr Condition kNotRuled =
+    is_not(kKind, geometry::kRuled, "not allowed for element.kind = \"ruled\", whose cells are described by [grooves]");
+
 constexpr Condition kPrismOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
-    kElementOfNoBall, kNotRound,
+    kElementOfNoBall, kNotRound, kNotRuled,
     is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall,
+constexpr Condition kCantOnly[] = {kElementOfNoBall, kNotRuled,
                                    is(kKind, geometry::kCubeKindsOfDesigns, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 constexpr Condition kRoundOnly[] = {is(kKind, geometry::kRoundCube)};
@@ -41,7 +46,7 @@ constexpr Condition kEdgeLengthOnly[] = {is(kKind, geometry::kRoundCube),
 constexpr Row kElementRows[] = {
     {"kind", Word{geometry::kElementKinds}, kRequired,
      "Kind of the elements: prisms, hexagonal or triangular cube corners, a single cube corner with a circular face "
-     "(`\"round_icc\"`), or balls."},
+     "(`\"round_icc\"`), cells between sets of V-grooves (`\"ruled\"`), or balls."},
     where(kSizeKeys.base_mm, kPrismOnly),
     where(kSizeKeys.width_mm, kPrismOnly),
     where(geometry::kApexAngleKey, kPrismOnly),
@@ -61,14 +66,12 @@ constexpr Row kElementRows[] = {
          "more if angle errors or a cant raise the facets"},
      "Length from the apex to the face.", kRoundOnly},
     {"edge_length_mm", kSize, Computed{"sqrt(3) times the length"},
-     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, before it was made "
-     "round. "
-     "It is sqrt(3) times the length and replaces `length_mm`.",
+     "Length of the dihedral edges of the cube corner from the apex to the plane of the face, without the cut by the "
+     "circular outline. It is sqrt(3) times the length and replaces `length_mm`.",
      kEdgeLengthOnly},
     {"chamfer_mm", kGap, 0.0,
      "Width of the chamfer at the rim of the face, in plan. Light that meets the chamfer from outside or from inside "
-     "is "
-     "stopped.",
+     "is stopped.",
      kRoundOnly},
     {"recess_mm", kGap, 0.0,
      "Depth of the face below the edge of its mount. The edge stops light on its way to the face and on its way back.",
@@ -92,6 +95,7 @@ constexpr Row kElementRows[] = {
 constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
 constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
 constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
+constexpr Condition kOfRuled[] = {is(kKind, geometry::kRuled)};
 constexpr Condition kOfBalls[] = {is(kKind, kBall)};
 constexpr Condition kOfRound[] = {is(kKind, geometry::kRoundCube)};
 constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
@@ -114,6 +118,10 @@ constexpr std::string_view kNeedsFiniteArray =
 constexpr Condition kMaskOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle, kNeedsFiniteArray),
                                    is_not(kExtent, kInfinite, kNeedsFiniteArray)};
 constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, is_given("array.mask")};
+constexpr Condition kInfiniteOnly[] = {kArrayOfNoBall,
+                                       is(kExtent, kInfinite, "only allowed for array.extent = \"infinite\"")};
+constexpr Condition kSpreadOnly[] = {kInfiniteOnly[0], kInfiniteOnly[1],
+                                     is_given("array.depth_spread_nm", "only allowed together with depth_spread_nm")};
 constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
 
 constexpr Row kArrayRows[] = {
@@ -126,6 +134,8 @@ constexpr Row kArrayRows[] = {
      "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kRuledArrangement}, "ruled",
+     "Arrangement of the cells. The grooves of a ruled array determine the positions of its cells.", kOfRuled},
     {"arrangement", Word{kSingle}, "single",
      "Arrangement of the element. A cube corner with a circular face is single.", kOfRound},
     {"arrangement", Word{kBallArrangements}, "packed",
@@ -154,24 +164,59 @@ constexpr Row kArrayRows[] = {
      "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255. With "
      "0.7, values up to 178 are dark.",
      kThresholdOnly},
+    {"depth_spread_nm", Number{kCellSpread}, kNone,
+     "Standard deviation of the depths of cells. If it is given, the fields of different cells are added, and light "
+     "leaves in diffraction orders of the array and as diffuse light. Without it, the intensities of cells are added, "
+     "as for cells whose depths differ by more than a wavelength.",
+     kInfiniteOnly},
+    {"spacing_spread_nm", Number{kCellSpread}, 0.0,
+     "Standard deviation of the positions of cells, along x and along y. Errors of different cells are independent.",
+     kSpreadOnly},
     {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";
-constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate)};
+constexpr std::string_view kBesideSolid = "not allowed together with solid, because a part has only one shape";
+constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate), is_absent("solid", kBesideSolid)};
+constexpr Condition kSolidOnly[] = {is_absent("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
-constexpr Condition kFacetsOnly[] = {is_absent("plate_mm", kBesidePlate),
-                                     is_absent("mesh", "not allowed together with mesh, which determines all facets")};
+constexpr Condition kWithSolid[] = {is_absent("plate_mm", kBesidePlate), is_given("solid")};
+constexpr Condition kFacetsOnly[] = {
+    is_absent("plate_mm", kBesidePlate),
+    is_absent("mesh", "not allowed together with mesh, which determines all facets"),
+    is_absent("solid", "not allowed together with solid, which determines all facets")};
+constexpr Words kFacings = {"up", "down"};
+constexpr double kNoRotations[] = {0.0, 0.0, 0.0};
+
+constexpr Row kRotateRow = {"rotate_deg", Numbers{3, kAzimuth, "angles, about x, y and z"},
+                            std::span<const double>(kNoRotations),
+                            "`[x, y, z]`: rotations of the file about its origin, first about x, then about y, then "
+                            "about z of the part frame."};
+constexpr Row kFacingRow = {"facing", Word{kFacings}, "up",
+                            "Direction of the entrance face in the file, after `rotate_deg`. `\"down\"`: the part is "
+                            "rotated by 180 degrees about x, so that its entrance face points towards +z."};
 
 constexpr Row kPartRows[] = {
-    {"mesh", File{"an STL file"}, kNone,
-     "STL mesh of the whole part, binary or ASCII, in the part frame. It replaces the elements. It has at most 10 "
-     "million triangles.",
+    {"mesh", File{"an STL or OBJ file"}, kNone,
+     "Triangle mesh of the whole part: STL (binary or ASCII), or OBJ if the name ends in `.obj`. It replaces the "
+     "elements. It has at most 10 million triangles.",
      kMeshOnly},
+    {"solid", File{"a STEP file"}, kNone,
+     "STEP file (AP203, AP214 or AP242) with the whole part as a solid. It replaces the elements. Its units are those "
+     "of the file. Plane faces are exact.",
+     kSolidOnly},
     {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
+    where(kRotateRow, kWithMesh),
+    where(kRotateRow, kWithSolid),
+    where(kFacingRow, kWithMesh),
+    where(kFacingRow, kWithSolid),
+    {"weld_mm", Number{{.low = 0.0, .high = 1.0}}, 0.0,
+     "Maximum distance of vertices that are merged to one vertex. 0: only vertices at the same position are merged.",
+     kWithMesh},
+    {"chord_mm", Number{{.low = 1e-6, .high = 1.0}}, 0.001,
+     "Maximum distance between curved faces of the solid and the triangles by which they are traced.", kWithSolid},
     {"allow_open", Flag{}, false,
-     "true: a mesh with defects is traced. Openings are closed by flat patches, and bodies that intersect are united. "
-     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect. Results apply to the "
-     "repaired mesh.",
+     "true: a mesh with defects is traced. Openings are closed by flat patches. A mesh that touches itself along edges "
+     "is traced unchanged. A warning reports each defect. Results apply to the repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kPlausibleSize, "lengths, along x and y"}, kNone,
      "Lengths along x and y of a plate that replaces the elements. The flat back of the plate, on z = 0, is its only "

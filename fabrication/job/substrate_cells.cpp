@@ -166,6 +166,7 @@ struct ShapeWords {
   }
   std::string operator()(const geometry::FormulaSubstrate&) const { return "the job's formula"; }
   std::string operator()(const geometry::OffsetSubstrate&) const { return "a surface below the entrance surface"; }
+  std::string operator()(const geometry::StepFace&) const { return "a face of a STEP file"; }
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace retrace::geometry {
 
 struct PlanRegion;
 
-enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
+enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular, ruled };
 enum class Extent { finite, infinite };
 /// Parity of the rows of an offset array that are shifted. Rows are counted from 1 at y = 0. An array with a single row
 /// is never shifted.

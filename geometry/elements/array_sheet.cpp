@@ -53,6 +53,7 @@ std::vector<double> rim_heights(const Cell& cell, const Element& element) {
   const double depth_mm = element_depth_mm(element);
   const Cell nominal = element_in_place_of(cell, without_cant(element), AngleErrors{});
   std::vector<double> heights;
+  if (std::holds_alternative<RuledCells>(element)) return std::vector<double>(cell.outline.size(), 0.0);
   for (const Vec2& p : cell.outline) {
     double height = -depth_mm;
     for (const CellFacet& facet : nominal.facets) height = std::max(height, facet.plane.at(p));

@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/outline/plan_region.h"
 
 namespace retrace::geometry {
@@ -191,8 +192,8 @@ Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& erro
 }
 
 Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
-  // Number of sides of a polygon that replaces a circle. It is a multiple of 12, so that the polygon has the symmetry
-  // of a cube corner.
+  // Number of sides of the polygon that approximates a circle. It is a multiple of 12, so that the polygon has all
+  // symmetries of a cube corner.
   constexpr int kSides = 180;
   constexpr double kStepDeg = 360.0 / kSides;
   const double step_rad = 2.0 * std::numbers::pi / kSides;
@@ -203,7 +204,7 @@ Polygon polygon_of_circle(const Vec2& centre, double diameter_mm) {
 }
 
 Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre) {
-  constexpr double kSliver = 1e-9;  // relative to the diameter
+  constexpr double kSliver = 1e-9;  // merge distance as a fraction of the diameter
   Polygon outline = polygon_of_circle(centre, element.diameter_mm);
   if (element.outline)
     outline = clip(outline, moved(element.outline->hull, centre - element.outline->box_mm.centre()),
@@ -217,7 +218,8 @@ Cell element_in_place_of(const Cell& cell, const Element& element, const AngleEr
       Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, cell.at_mm, cell.rotated); },
                  [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, cell.at_mm); },
                  [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, cell.at_mm, cell.rotated); },
-                 [&](const RoundCube& e) { return round_cube_cell(e, errors, cell.at_mm); }},
+                 [&](const RoundCube& e) { return round_cube_cell(e, errors, cell.at_mm); },
+                 [&](const RuledCells&) { return cell; }},
       element);
 }
 
@@ -225,7 +227,8 @@ Cell element_cell(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_cell(e, errors, Vec2::Zero()); },
                                [&](const HexagonalCube& e) { return hexagonal_cube_cell(e, errors, Vec2::Zero()); },
                                [&](const TriangularCube& e) { return triangular_cube_cell(e, errors, Vec2::Zero()); },
-                               [&](const RoundCube& e) { return round_cube_cell(e, errors, Vec2::Zero()); }},
+                               [&](const RoundCube& e) { return round_cube_cell(e, errors, Vec2::Zero()); },
+                               [&](const RuledCells& e) { return largest_cell(*e.pattern); }},
                     element);
 }
 
@@ -233,19 +236,26 @@ double element_depth_mm(const Element& element, const AngleErrors& errors) {
   return std::visit(Overloaded{[&](const RtpElement& e) { return rtp_depth(e, errors); },
                                [](const HexagonalCube& e) { return 2.0 * rise_of_dihedral_edge(e.aperture_mm); },
                                [](const TriangularCube& e) { return rise_of_dihedral_edge(e.aperture_mm); },
-                               [](const RoundCube& e) { return 2.0 * rise_of_dihedral_edge(e.diameter_mm); }},
+                               [](const RoundCube& e) { return 2.0 * rise_of_dihedral_edge(e.diameter_mm); },
+                               [](const RuledCells& e) { return -e.pattern->lowest_mm; }},
                     element);
 }
 
 Cant cant_of(const Element& element) {
-  return std::visit(Overloaded{[](const RtpElement&) { return Cant{}; }, [](const auto& cube) { return cube.cant; }},
+  return std::visit(Overloaded{[](const RtpElement&) { return Cant{}; }, [](const RuledCells&) { return Cant{}; },
+                               [](const auto& cube) { return cube.cant; }},
                     element);
+}
+
+std::vector<Cell> distinct_cells(const Element& element, const AngleErrors& errors) {
+  if (const auto* const ruled = std::get_if<RuledCells>(&element)) return ruled->pattern->cells;
+  return {element_cell(element, errors)};
 }
 
 double steepest_facet_deg(const Element& element, const AngleErrors& errors) {
   double steepest = 0.0;
-  for (const CellFacet& facet : element_cell(element, errors).facets)
-    steepest = std::max(steepest, std::atan(facet.plane.slope.norm()));
+  for (const Cell& cell : distinct_cells(element, errors))
+    for (const CellFacet& facet : cell.facets) steepest = std::max(steepest, std::atan(facet.plane.slope.norm()));
   return steepest * 180.0 / std::numbers::pi;
 }
 

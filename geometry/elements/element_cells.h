@@ -39,6 +39,8 @@ struct CellFacet {
   /// (x, y) of the centroid of the complete facet, before edges, scratches and borders remove parts of it. The facet's
   /// form error is defined relative to this point. Land and edges have no value.
   std::optional<Vec2> centroid_mm = {};
+  /// True for a horizontal portion of a ruled cell: a truncated top or a flat groove bottom. It is not a retro facet.
+  bool is_flat = false;
 };
 
 /// An element, or a flat area on z = 0 without elements (land). The order of an element's facets is the order of
@@ -66,15 +68,20 @@ Cell hexagonal_cube_cell(const HexagonalCube& element, const AngleErrors& errors
 Cell triangular_cube_cell(const TriangularCube& element, const AngleErrors& errors, const Vec2& centre_mm,
                           bool rotated = false);
 
-/// Returns a regular polygon with the area of a circle. It has the symmetry of a cube corner that is not rotated. Three
-/// of its sides are parallel to the contour lines of the facets.
+/// Returns a regular polygon with the area of a circle. The polygon has all symmetries of a cube corner with its
+/// default orientation. Three of its sides are parallel to the contour lines of the facets.
 Polygon polygon_of_circle(const Vec2& centre_mm, double diameter_mm);
 
-/// Returns a cube corner with a circular face. Its apex is below `centre_mm`.
+/// Returns the facets of a cube corner with a circular face. Its apex is below `centre_mm`.
 Cell round_cube_cell(const RoundCube& element, const AngleErrors& errors, const Vec2& centre_mm);
 
 /// Returns one element that is not rotated. Its lower left corner (prism) or its apex (cube corner) is at the origin.
+/// For ruled cells, this is the largest cell.
 Cell element_cell(const Element& element, const AngleErrors& errors = {});
+
+/// Returns the cells in which an array's elements differ, apart from rotations about z: all cells of a ruled pattern,
+/// and element_cell() for the other kinds of elements.
+std::vector<Cell> distinct_cells(const Element& element, const AngleErrors& errors = {});
 
 /// Returns an element at the position and rotation of `cell`, with the given errors.
 /// \pre cell.is_element

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "geometry/elements/edges.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/scratches.h"
 
 namespace retrace::geometry {
@@ -89,6 +90,7 @@ Lattice sharp_lattice(const PartSpec& spec, bool rows_are_shifted) {
     return honeycomb_lattice(*hexagonal, spec.angle_errors);
   if (const auto* triangular = std::get_if<TriangularCube>(&spec.element))
     return triangular_lattice(*triangular, spec.angle_errors);
+  if (const auto* ruled = std::get_if<RuledCells>(&spec.element)) return ruled_lattice(*ruled->pattern, spec.array);
   return rtp_lattice(spec, rows_are_shifted);
 }
 

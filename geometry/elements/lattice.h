@@ -13,6 +13,8 @@ struct Lattice {
   Vec2 period_mm = Vec2::Zero();
   std::vector<Cell> cells;
   int elements_per_period = 0;
+  /// False if the cells cover a finite part without repeating. The period is then longer than the part.
+  bool repeats = true;
 };
 
 /// Returns the element with its rounded edges and its scratches.

@@ -44,21 +44,28 @@ struct TriangularCube {
   Cant cant = {};
 };
 
-/// Single cube corner with a circular face, for ranging and surveying. It is a full cube corner that is cut by a
-/// cylinder about its axis. The highest points of the nominal facets inside the circle are on z = 0.
+/// Single cube corner with a circular face, for ranging and surveying. Its shape is a cube corner inside a cylinder
+/// about the cube's axis. The highest points of the nominal facets inside the cylinder are at z = 0.
 struct RoundCube {
-  double diameter_mm = 0.0;  ///< diameter of the face; > 0
+  double diameter_mm = 0.0;  ///< diameter of the entrance face; > 0
   Cant cant = {};
-  double chamfer_mm = 0.0;  ///< width of the chamfer at the rim of the face, in plan; the chamfer stops light
-  double recess_mm = 0.0;   ///< distance from the face to the edge of the mount, >= 0
-  /// Diameter of the circular edge of the mount. Light that crosses the plane of the edge outside this circle is
-  /// stopped. 0: there is no mount.
+  double chamfer_mm = 0.0;  ///< width of the chamfer at the rim of the entrance face, in plan; the chamfer blocks light
+  double recess_mm = 0.0;   ///< depth of the entrance face below the edge of the mount, >= 0
+  /// Diameter of the circular edge of the mount. The mount blocks light outside this circle. 0: there is no mount.
   double mount_diameter_mm = 0.0;
-  /// Convex outline that also cuts the face, or null. The centre of its bounding box is above the apex.
+  /// Convex outline that also limits the entrance face, or null. The centre of its bounding box is above the apex.
   std::shared_ptr<const PlanRegion> outline = {};
 };
 
-using Element = std::variant<RtpElement, HexagonalCube, TriangularCube, RoundCube>;
+struct RuledPattern;
+
+/// Cells between sets of parallel V-grooves that a ruling machine cuts into the master of a sheeting. The grooves fill
+/// the array, so that the cells are not repeated by an arrangement of their own.
+struct RuledCells {
+  std::shared_ptr<const RuledPattern> pattern;  ///< never null (geometry/elements/ruled_pattern.h)
+};
+
+using Element = std::variant<RtpElement, HexagonalCube, TriangularCube, RoundCube, RuledCells>;
 
 /// Errors of the facets' angles, in arc minutes. Facets are rotated about the root or apex, which does not move. The
 /// element's outline in plan stays nominal, so its rims end above or below z = 0. If both kinds of error are given,

@@ -98,6 +98,7 @@ SubstrateSurface substrate_surface_of(const PartSpec& spec) {
 double width_across_mm(const Element& element) {
   if (const auto* rtp = std::get_if<RtpElement>(&element)) return std::hypot(rtp->base_mm, rtp->width_mm);
   if (const auto* cube = std::get_if<HexagonalCube>(&element)) return cube->aperture_mm;
+  if (std::holds_alternative<RuledCells>(element)) return bounding_box(element_cell(element).outline).size().norm();
   return std::get<TriangularCube>(element).aperture_mm;
 }
 

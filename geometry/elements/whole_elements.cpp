@@ -7,6 +7,7 @@
 
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/substrate_checks.h"
 
 namespace retrace::geometry {
@@ -67,6 +68,7 @@ class Walk {
 
   /// Returns the apex, rounded to a multiple of half a period. Symmetric positions are then exactly symmetric.
   Vec2 apex_mm(std::size_t cell, const Vec2& shift) const {
+    if (std::holds_alternative<RuledCells>(sheet_.spec->element)) return sheet_.reference_points_mm[cell] + shift;
     const Vec2 half = 0.5 * sheet_.lattice.period_mm;
     const Vec2 aside(sheet_.lattice.cells[cell].rotated ? 0.5 * width_across_mm(sheet_.spec->element) : 0.0, 0.0);
     const Vec2 steps = (sheet_.reference_points_mm[cell] + aside + shift).cwiseQuotient(half);
@@ -184,6 +186,8 @@ double element_estimate(const ArrayLayout& array, const Element& element) {
   if (const auto* const prism = std::get_if<RtpElement>(&element))
     return (array.x_length_mm + array.x_gap_mm) / (prism->base_mm + array.x_gap_mm) *
            ((array.y_length_mm + array.y_gap_mm) / (prism->width_mm + array.y_gap_mm));
+  if (const auto* const ruled = std::get_if<RuledCells>(&element))
+    return array.x_length_mm * array.y_length_mm / ruled->pattern->mean_cell_mm2;
   return array.x_length_mm * array.y_length_mm / area(element_cell(element).outline);
 }
 

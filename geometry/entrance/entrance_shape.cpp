@@ -21,7 +21,8 @@ Sag height_of(const EntranceShape& shape) {
                         [&](const BiconicEntrance& biconic) {
                           sag.biconic = {{-1.0 / biconic.radii_mm[0], -1.0 / biconic.radii_mm[1]}, biconic.conics};
                         },
-                        [&](const FormulaEntrance& formula) { sag.formula = *formula.height_mm; }},
+                        [&](const FormulaEntrance& formula) { sag.formula = *formula.height_mm; },
+                        [&](const StepFace& face) { sag.patches = patches_of(face); }},
              shape);
   return sag;
 }

@@ -10,6 +10,7 @@
 
 #include "core/math/formula.h"
 #include "geometry/surface/sag.h"
+#include "geometry/surface/step_face.h"
 #include "geometry/vec.h"
 
 namespace retrace::geometry {
@@ -44,15 +45,17 @@ struct FormulaEntrance {
 };
 
 /// Names of the shapes in files, in the order of the alternatives of EntranceShape.
-inline constexpr std::string_view kEntranceKinds[] = {"plane", "cylinder", "sphere", "biconic", "formula"};
+inline constexpr std::string_view kEntranceKinds[] = {"plane", "cylinder", "sphere", "biconic", "formula", "step"};
 
-using EntranceShape = std::variant<PlaneEntrance, CylinderEntrance, SphereEntrance, BiconicEntrance, FormulaEntrance>;
+using EntranceShape =
+    std::variant<PlaneEntrance, CylinderEntrance, SphereEntrance, BiconicEntrance, FormulaEntrance, StepFace>;
 
 /// Parses the formula of a FormulaEntrance.
 /// \throw InputError at `where`, with the position of the error in the formula
 FormulaEntrance parse_entrance_formula(const std::string& text, const InputLocation& where);
 
 /// Returns the height of a shape in its own frame.
+/// \pre the file of a StepFace has been read
 Sag height_of(const EntranceShape& shape);
 
 /// Orientation of an entrance face relative to the elements of the part, whose axes are parallel to z. The axis of the

@@ -12,16 +12,17 @@ namespace retrace::geometry {
 
 /// Values of `element.kind`, in the order of the alternatives of Element. Round cube corners and balls are allowed only
 /// in designs.
-inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ball"};
+inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "round_icc", "ruled", "ball"};
 inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
 
 inline constexpr auto kRoundCube = schema::only(kElementKinds, "round_icc");
-/// Kinds of cube corners, including the kinds that are allowed only in designs.
+inline constexpr auto kRuled = schema::only(kElementKinds, "ruled");
+/// Values of `element.kind` for cube corners, including kinds that only designs may contain.
 inline constexpr auto kCubeKindsOfDesigns = schema::only(kElementKinds, "hexagonal_icc", "round_icc");
 
 /// Words of `array.arrangement`, in the order of the enumerators of Arrangement.
-inline constexpr schema::Words kArrangementWords = {"single",  "aligned",   "offset",
-                                                    "checker", "honeycomb", "triangular"};
+inline constexpr schema::Words kArrangementWords = {"single",    "aligned",    "offset", "checker",
+                                                    "honeycomb", "triangular", "ruled"};
 inline constexpr auto kPrismArrangements = schema::only(kArrangementWords, "single", "checker");
 /// Words of `array.arrangement` for hexagonal cube corners. In designs, a honeycomb can also consist of the ends of
 /// pins.

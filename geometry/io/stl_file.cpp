@@ -114,6 +114,14 @@ bool is_binary(std::string_view begin, std::uintmax_t file_bytes) {
   return begin.size() >= binary_length(0) && file_bytes == binary_length(binary_count(begin));
 }
 
+/// Returns the number of bytes after the last triangle of a binary file. Returns 0 if there are none, or if the file
+/// has no triangles or is too short for them.
+std::size_t bytes_after_triangles(std::string_view begin, std::uintmax_t file_bytes) {
+  if (begin.size() < binary_length(0) || binary_count(begin) == 0) return 0;
+  const std::size_t wanted = binary_length(binary_count(begin));
+  return file_bytes > wanted ? static_cast<std::size_t>(file_bytes - wanted) : 0;
+}
+
 /// Returns true if the header or the number of triangles contains a zero byte. Binary files contain zero bytes, but
 /// text files do not.
 bool begins_as_binary(std::string_view text) {
@@ -257,13 +265,18 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title) {
   return text;
 }
 
-TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale) {
+TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale, std::size_t* trailing_bytes) {
   if (is_binary(text, text.size())) return parse_binary(text, name, scale);
-  if (begins_as_binary(text)) refuse_length(text, text.size(), name);
+  if (begins_as_binary(text)) {
+    const std::size_t trailing = bytes_after_triangles(text, text.size());
+    if (trailing_bytes == nullptr || trailing == 0) refuse_length(text, text.size(), name);
+    *trailing_bytes = trailing;
+    return parse_binary(text, name, scale);
+  }
   return parse_ascii(without_byte_order_mark(text), name, scale);
 }
 
-TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
+TriangleMesh read_stl(const std::filesystem::path& file, double scale, std::size_t* trailing_bytes) {
   const std::string name = file.string();
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) {  // read_file() below reports other types of file
@@ -273,11 +286,12 @@ TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
     stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.resize(static_cast<std::size_t>(stream.gcount()));
     const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-    const bool is_whole = !error && is_binary(begin, bytes);
+    const bool is_whole = !error && (is_binary(begin, bytes) || (trailing_bytes != nullptr && begins_as_binary(begin) &&
+                                                                 bytes_after_triangles(begin, bytes) > 0));
     if (is_whole && binary_count(begin) > kMaxStlTriangles) refuse_count(name);
     if (!error && !is_whole && begins_as_binary(begin)) refuse_length(begin, bytes, name);
   }
-  return parse_stl(read_file(file, kMaxDataBytes), name, scale);
+  return parse_stl(read_file(file, kMaxDataBytes), name, scale, trailing_bytes);
 }
 
 }  // namespace retrace::geometry

@@ -25,13 +25,16 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 /// outside. Vertices with equal coordinates are merged. Triangles with two equal vertices are removed.
 /// \param name name of the file, for messages
 /// \param scale factor from the unit of the file to mm
+/// \param trailing_bytes receives the number of bytes after the last triangle of a binary file. If it is null, a file
+///     with such bytes is refused.
 /// \throw InputError if the text is not STL, if a coordinate is not a finite number below 1e6 mm, or if there are no
 ///        triangles or more than kMaxStlTriangles. The message quotes the file only if it begins like an STL file.
-TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
+TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0,
+                       std::size_t* trailing_bytes = nullptr);
 
 /// Reads an STL file as parse_stl() does. A binary file may be refused before its triangles are read. This happens if
 /// the stored number of triangles is above kMaxStlTriangles or does not match the length of the file.
 /// \throw InputError in the same cases as parse_stl(), and if the file cannot be read
-TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
+TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0, std::size_t* trailing_bytes = nullptr);
 
 }  // namespace retrace::geometry

@@ -8,6 +8,7 @@
 #include "core/overloaded.h"
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
+#include "geometry/io/step_rows.h"
 
 namespace retrace::geometry {
 namespace {
@@ -16,8 +17,9 @@ using namespace schema;
 
 /// Words of the key `kind`, in the order of the alternatives of SubstrateShape.
 constexpr Words kKinds = {"plane", "cylinder", "sphere", "formula"};
-/// Kinds of substrates in designs. Jobs allow only the kinds in `kKinds`, because they have no entrance surface.
-constexpr Words kKindsOfDesign = {"plane", "cylinder", "sphere", "formula", "offset"};
+/// Kinds of substrates in designs. A job has no entrance surface and names no STEP files. It therefore allows only
+/// `kKinds`.
+constexpr Words kKindsOfDesign = {"plane", "cylinder", "sphere", "formula", "offset", "step"};
 constexpr Words kAxes = {"x", "y"};
 constexpr Words kElementAxesWords = {"normal", "parallel"};
 constexpr Words kPins = {"pins"};
@@ -27,6 +29,7 @@ constexpr Condition kCylinderOnly[] = {is("kind", only(kKinds, "cylinder"))};
 constexpr Condition kRoundOnly[] = {is("kind", only(kKinds, "cylinder", "sphere"))};
 constexpr Condition kFormulaOnly[] = {is("kind", only(kKinds, "formula"))};
 constexpr Condition kOffsetOnly[] = {is("kind", only(kKindsOfDesign, "offset"))};
+constexpr Condition kStepOnly[] = {is("kind", only(kKindsOfDesign, "step"))};
 constexpr Condition kOfPins[] = {is("array.arrangement", kPins)};
 constexpr Condition kOfNoPins[] = {is_not("array.arrangement", kPins)};
 constexpr Condition kOfNoPinsOnSurface[] = {
@@ -38,8 +41,8 @@ Value get_kind(const Substrate& substrate) {
   return static_cast<double>(substrate.shape.index());
 }
 void set_kind(Substrate& substrate, const Value& value) {
-  const std::array<SubstrateShape, 5> shapes = {PlaneSubstrate(), CylinderSubstrate(), SphereSubstrate(),
-                                                FormulaSubstrate(), OffsetSubstrate()};
+  const std::array<SubstrateShape, 6> shapes = {PlaneSubstrate(),   CylinderSubstrate(), SphereSubstrate(),
+                                                FormulaSubstrate(), OffsetSubstrate(),   StepFace()};
   substrate.shape = shapes[static_cast<std::size_t>(std::get<double>(value))];
   if (std::holds_alternative<OffsetSubstrate>(substrate.shape)) substrate.element_axes = ElementAxes::parallel;
 }
@@ -70,6 +73,20 @@ Value get_sag(const Substrate& substrate) {
 void set_sag(Substrate& substrate, const Value& value) {
   substrate.shape = formula_substrate(std::get<std::string>(value));
 }
+
+StepFace& step_face_of(Substrate& substrate) {
+  return std::get<StepFace>(substrate.shape);
+}
+const StepFace& step_face_of(const Substrate& substrate) {
+  return std::get<StepFace>(substrate.shape);
+}
+/// Access to a member of the selection in a STEP file.
+template <auto member>
+constexpr Access kAccessInChoice = {
+    [](const void* object) { return get_member<member>(&step_face_of(*static_cast<const Substrate*>(object)).choice); },
+    [](void* object, const Value& value) {
+      set_member<member>(&step_face_of(*static_cast<Substrate*>(object)).choice, value);
+    }};
 
 void set_parallel(Substrate& substrate, const Value&) {
   substrate.element_axes = ElementAxes::parallel;
@@ -109,10 +126,11 @@ constexpr Row kRows[] = {
 /// Index of the row of `element_axes` for elements other than pins. In designs, this row has the condition
 /// kOfNoPinsOnSurface.
 constexpr std::size_t kAxesRow = std::size(kRows) - 2;
-constexpr Row kKindRowOfDesign = {
-    "kind", Word{kKindsOfDesign}, kRequired,
-    "Shape of the substrate. `\"offset\"`: below the entrance surface, which must have a `kind`.",
-    access_by<get_kind, set_kind>};
+constexpr Row kKindRowOfDesign = {"kind", Word{kKindsOfDesign}, kRequired,
+                                  "Shape of the substrate. `\"offset\"`: below the entrance surface, which must have a "
+                                  "`kind`. `\"step\"`: a face of a "
+                                  "STEP file.",
+                                  access_by<get_kind, set_kind>};
 constexpr Row kWallRow = {
     "wall_mm",
     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
@@ -130,7 +148,13 @@ constexpr Row row_of_design(std::size_t k) {
   return k == kAxesRow ? where(kRows[k], kOfNoPinsOnSurface) : kRows[k];
 }
 constexpr auto kRowsOfDesign = []<std::size_t... k>(std::index_sequence<k...>) {
-  return std::array{row_of_design(k)..., kWallRow};
+  return std::array{row_of_design(k)...,
+                    kWallRow,
+                    with(kStepFileRow, access_in<&Substrate::shape, &StepFace::name>, kStepOnly),
+                    with(kStepFaceRow, kAccessInChoice<&StepChoice::face>, kStepOnly),
+                    with(kStepSewRow, kAccessInChoice<&StepChoice::sew_mm>, kStepOnly),
+                    with(kStepOriginRow, kAccessInChoice<&StepChoice::origin_mm>, kStepOnly),
+                    with(kStepRotationRow, kAccessInChoice<&StepChoice::rotation_deg>, kStepOnly)};
 }
 (std::make_index_sequence<std::size(kRows)>{});
 
@@ -145,11 +169,12 @@ std::span<const Row> substrate_rows() {
 }
 
 std::string_view substrate_shape_key(const Substrate& substrate) {
-  return std::visit(Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
-                               [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
-                               [](const OffsetSubstrate&) { return "substrate.wall_mm"; },
-                               [](const auto&) { return "substrate.radius_mm"; }},
-                    substrate.shape);
+  return std::visit(
+      Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
+                 [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
+                 [](const OffsetSubstrate&) { return "substrate.wall_mm"; },
+                 [](const StepFace&) { return "substrate.file"; }, [](const auto&) { return "substrate.radius_mm"; }},
+      substrate.shape);
 }
 
 }  // namespace retrace::geometry

@@ -15,8 +15,8 @@ constexpr double kSameCorner = 1e-9;
 constexpr double kMinFacetRoom = 1e-6;
 // Distance between the outline of an excerpt and all its facets, as a fraction of the element's size.
 constexpr double kExcerptMargin = 0.25;
-// Distance by which the sides of an excerpt are moved outwards, as a fraction of the element's size. Walls of cut
-// elements are in the planes of the sides. Because of this displacement, light meets these walls before it meets the
+// Sides of the original part are moved outwards by this distance, as a fraction of the element's size. Walls of cut
+// elements are in the planes of the sides. Because of the displacement, light meets these walls before it meets the
 // sides.
 constexpr double kBehindCells = 1e-9;
 

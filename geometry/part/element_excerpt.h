@@ -25,7 +25,7 @@ struct PartElement {
 /// Returns all elements of a finite part, whole and cut. An element has at least one retro facet.
 std::vector<PartElement> part_elements(const Part& part);
 
-/// Kind of a cell in an excerpt. A cell belongs to the element, to another element, to flat land, or to a side of the
+/// Origin of a cell in an excerpt: the selected element, another element, flat land between elements, or a side of the
 /// original part.
 enum class ExcerptCell { own_element, other_element, land, side };
 
@@ -34,14 +34,13 @@ struct ElementExcerpt {
   /// Facets of the element and of its surroundings. The entrance face is the plane z = `thickness_mm`. The original
   /// part continues beyond `outline`, which is only the limit of the excerpt. `entrance_pieces` is empty.
   Part part;
-  /// Kind of each cell of the patch. The cells of the element itself come first. For all cells of an element,
-  /// element_id() is the index of its first cell.
+  /// Kind of each cell of the patch. The cells of the selected element come first. element_id() of a cell is the index
+  /// of the first cell of its element.
   std::vector<ExcerptCell> cells;
 };
 
-/// Cuts out an element and all cells whose distance from the element in plan is at most `reach_mm`. Sides of the
-/// original part that are within this distance are added as facets. Cells that reach the plane of the entrance face are
-/// omitted.
+/// Cuts out an element and all cells whose distance from the element is at most `reach_mm` in plan. Sides of the
+/// original part within this distance become facets. Cells that reach up to the plane of the entrance face are omitted.
 /// \param frame_from_part maps the part frame to the frame of the excerpt
 /// \param thickness_mm height of the entrance face in the frame of the excerpt
 /// \pre the part is finite and its outline is convex

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "geometry/centroid.h"
+#include "geometry/outline/convex_decomposition.h"
 #include "geometry/part/region_elements.h"
 #include "geometry/part/triangle_mesh.h"
 
@@ -66,7 +67,7 @@ Ring take_ring(std::map<std::uint32_t, std::uint32_t>& next) {
 
 class PartBuilder {
  public:
-  explicit PartBuilder(const TriangleMesh& mesh) : mesh_(mesh) {
+  PartBuilder(const TriangleMesh& mesh, std::optional<double> rounding_mm) : mesh_(mesh) {
     Vec3 lower = Vec3::Constant(INFINITY);
     Vec3 upper = Vec3::Constant(-INFINITY);
     for (const Vec3& p : mesh.vertices) {
@@ -75,7 +76,8 @@ class PartBuilder {
     }
     top_z_ = upper.z();
     tolerance_mm_ = kSinglePrecision * (upper - lower).norm();
-    rounding_mm_ = kVertexRounding * std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff());
+    rounding_mm_ =
+        rounding_mm.value_or(kVertexRounding * std::max(lower.cwiseAbs().maxCoeff(), upper.cwiseAbs().maxCoeff()));
   }
 
   Part build() {
@@ -85,9 +87,10 @@ class PartBuilder {
     sort_triangles();
     Part part;
     part.outline = outline_;
+    part.entrance_pieces = pieces_;
     part.patches.push_back(make_patch(part));
     part.placements.push_back({0, Vec2::Zero()});
-    part.entrance_area_mm2 = area(outline_);
+    for (const Polygon& piece : entrance_polygons(part)) part.entrance_area_mm2 += area(piece);
     for (const PatchFacet& facet : part.patches[0].facets)
       if (facet.role == FacetRole::retro_facet) part.retro_facet_area_mm2 += facet_area(part.patches[0], facet);
     return part;
@@ -95,8 +98,17 @@ class PartBuilder {
 
  private:
   struct Side {
+    Vec2 from = Vec2::Zero();
+    Vec2 to = Vec2::Zero();
     Vec2 normal = Vec2::UnitX();  ///< points out of the part
     double offset_mm = 0.0;
+    bool is_on_hull = true;  ///< false for the sides of notches and holes
+
+    double distance(const Vec2& p) const {
+      const Vec2 along = to - from;
+      const double share = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      return (from + share * along - p).norm();
+    }
   };
 
   Vec3 twice_area(std::size_t t) const {
@@ -118,41 +130,73 @@ class PartBuilder {
       throw InputError(
           "the mesh has no entrance face: its highest points must form one horizontal face that points towards +z");
     auto next = borders(top, "the entrance face of the mesh");
-    const Ring ring = take_ring(next);
-    if (!next.empty())
-      throw InputError("the entrance face of the mesh must be one face without holes, but it has several borders");
-    for (std::size_t i = 0; i < ring.size(); ++i) add_corner(ring, i);
-    require_convex();
+    while (!next.empty()) loops_.push_back(corners_of(take_ring(next)));
+    std::stable_sort(loops_.begin(), loops_.end(),
+                     [](const Polygon& a, const Polygon& b) { return area(a) > area(b); });
+    if (loops_.front().size() < 3) throw InputError("the entrance face of the mesh has no area");
+    if (loops_.size() > 1 && area(loops_[1]) >= 0.0)
+      throw InputError("the entrance face of the mesh must be one face, but it consists of several faces");
+    outline_ = loops_.front();
+    if (loops_.size() == 1 && is_convex(outline_)) return;
+    pieces_ = convex_decomposition(loops_);
+    outline_ = convex_hull(loops_.front());
   }
 
-  /// Adds corner i of the ring to the outline, unless the corner is on a straight side.
-  void add_corner(const Ring& ring, std::size_t i) {
+  /// Returns the corners of a ring in plan, without those on straight sides.
+  Polygon corners_of(const Ring& ring) const {
     const auto at = [&](std::size_t k) { return Vec2(mesh_.vertices[ring[k % ring.size()]].head<2>()); };
-    const Vec2 before = outline_.empty() ? at(i + ring.size() - 1) : outline_.back();
-    const Vec2 along = at(i + 1) - before;
-    const Vec2 to = at(i) - before;
-    if (std::abs(along.x() * to.y() - along.y() * to.x()) > tolerance_mm_ * along.norm()) outline_.push_back(at(i));
+    Polygon corners;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2 before = corners.empty() ? at(i + ring.size() - 1) : corners.back();
+      const Vec2 along = at(i + 1) - before;
+      const Vec2 to = at(i) - before;
+      if (std::abs(along.x() * to.y() - along.y() * to.x()) > tolerance_mm_ * along.norm()) corners.push_back(at(i));
+    }
+    return corners;
   }
 
-  void require_convex() const {
-    if (outline_.size() < 3) throw InputError("the entrance face of the mesh has no area");
-    for (std::size_t i = 0; i < outline_.size(); ++i) {
-      const Vec2& p = outline_[i];
-      const Vec2 a = outline_[(i + 1) % outline_.size()] - p;
-      const Vec2 b = outline_[(i + 2) % outline_.size()] - outline_[(i + 1) % outline_.size()];
-      if (a.x() * b.y() - a.y() * b.x() <= 0.0)
-        throw InputError(
-            fmt::format("the outline of the mesh's entrance face must be convex, but is not at ({}, {}) mm",
-                        outline_[(i + 1) % outline_.size()].x(), outline_[(i + 1) % outline_.size()].y()));
+  static bool is_convex(const Polygon& polygon) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2& p = polygon[(i + 1) % polygon.size()];
+      const Vec2 a = p - polygon[i];
+      const Vec2 b = polygon[(i + 2) % polygon.size()] - p;
+      if (a.x() * b.y() - a.y() * b.x() <= 0.0) return false;
     }
+    return true;
   }
 
   void find_sides() {
+    for (const Polygon& loop : loops_)
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec2& from = loop[i];
+        const Vec2& to = loop[(i + 1) % loop.size()];
+        const Vec2 along = (to - from).normalized();
+        const Vec2 normal(along.y(), -along.x());
+        sides_.push_back({from, to, normal, normal.dot(from), is_on_hull(from, to)});
+      }
+  }
+
+  bool is_on_hull(const Vec2& from, const Vec2& to) const {
+    if (pieces_.empty()) return true;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
-      const Vec2 along = (outline_[(i + 1) % outline_.size()] - outline_[i]).normalized();
-      const Vec2 normal(along.y(), -along.x());
-      sides_.push_back({normal, normal.dot(outline_[i])});
+      const Side side{outline_[i], outline_[(i + 1) % outline_.size()]};
+      if (side.distance(from) <= tolerance_mm_ && side.distance(to) <= tolerance_mm_) return true;
     }
+    return false;
+  }
+
+  /// Returns the distance by which a point is outside the outline in plan, or 0 if it is inside.
+  double distance_outside(const Vec2& p) const {
+    if (pieces_.empty()) {
+      double beyond = 0.0;
+      for (const Side& side : sides_) beyond = std::max(beyond, side.normal.dot(p) - side.offset_mm);
+      return beyond;
+    }
+    if (std::any_of(pieces_.begin(), pieces_.end(), [&](const Polygon& piece) { return contains(piece, p); }))
+      return 0.0;
+    double nearest = INFINITY;
+    for (const Side& side : sides_) nearest = std::min(nearest, side.distance(p));
+    return nearest;
   }
 
   /// Moves vertices that are near the entrance plane or near a side onto that plane or side.
@@ -162,13 +206,11 @@ class PartBuilder {
     freedom_.reserve(settled_.size());
     for (Vec3& p : settled_) {
       if (top_z_ - p.z() <= tolerance_mm_) p.z() = top_z_;
-      for (const Side& side : sides_) {
-        const double beyond = side.normal.dot(p.head<2>()) - side.offset_mm;
-        if (beyond > 2.0 * tolerance_mm_)
-          throw InputError(fmt::format(
-              "the mesh must be within the outline of its entrance face, but ({}, {}, {}) mm is {:.3g} mm outside",
-              p.x(), p.y(), p.z(), beyond));
-      }
+      const double beyond = distance_outside(p.head<2>());
+      if (beyond > 2.0 * tolerance_mm_)
+        throw InputError(fmt::format(
+            "the mesh must be within the outline of its entrance face, but ({}, {}, {}) mm is {:.3g} mm outside", p.x(),
+            p.y(), p.z(), beyond));
       freedom_.push_back(settle(p));
     }
   }
@@ -177,15 +219,15 @@ class PartBuilder {
   /// the directions in which the vertex may still move. On a corner, it may move along z. On a side, it may move within
   /// the side's plane. Elsewhere, it may move in any direction.
   VertexConstraint settle(Vec3& p) const {
-    for (const Vec2& corner : outline_)
-      if ((p.head<2>() - corner).norm() <= 2.0 * tolerance_mm_) {
-        p.head<2>() = corner;
+    for (const Side& side : sides_)
+      if ((p.head<2>() - side.from).norm() <= 2.0 * tolerance_mm_) {
+        p.head<2>() = side.from;
         return Vec3::UnitZ() * Vec3::UnitZ().transpose();
       }
     const Side* nearest = nullptr;
     double least_mm = 2.0 * tolerance_mm_;
     for (const Side& side : sides_) {
-      const double away_mm = std::abs(side.normal.dot(p.head<2>()) - side.offset_mm);
+      const double away_mm = side.distance(p.head<2>());
       if (away_mm > least_mm) continue;
       nearest = &side;
       least_mm = away_mm;
@@ -197,23 +239,41 @@ class PartBuilder {
     return free;
   }
 
-  bool is_side(const std::array<std::uint32_t, 3>& triangle) const {
-    return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
-      return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) {
-        return side.offset_mm - side.normal.dot(settled_[v].head<2>()) <= 2.0 * tolerance_mm_;
-      });
+  /// Returns the side that contains a triangle, or null if there is none.
+  const Side* side_of(const std::array<std::uint32_t, 3>& triangle) const {
+    const auto found = std::find_if(sides_.begin(), sides_.end(), [&](const Side& side) {
+      return std::all_of(triangle.begin(), triangle.end(),
+                         [&](std::uint32_t v) { return side.distance(settled_[v].head<2>()) <= 2.0 * tolerance_mm_; });
     });
+    return found == sides_.end() ? nullptr : &*found;
   }
 
+  /// Collects the triangles of the back. Sides of notches and holes belong to the back.
   void sort_triangles() {
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      if (!is_entrance(t) && !is_side(mesh_.triangles[t])) back_.push_back(mesh_.triangles[t]);
-    if (back_.empty()) throw InputError("the mesh has no back below its entrance face");
+    bool has_back = false;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (is_entrance(t)) continue;
+      const Side* const side = side_of(mesh_.triangles[t]);
+      has_back = has_back || side == nullptr;
+      if (side == nullptr || !side->is_on_hull) back_.push_back(mesh_.triangles[t]);
+    }
+    if (!has_back) throw InputError("the mesh has no back below its entrance face");
   }
 
-  static FacetRole role_of(const Vec3& normal) {
+  FacetRole role_of(const FacetPlane& plane) const {
+    const Vec3& normal = plane.normal;
+    if (is_open_side(plane)) return FacetRole::side;
     if (normal.head<2>().norm() < kLevel) return FacetRole::flat_back;
     return std::abs(normal.z()) < kLevel ? FacetRole::inner_wall : FacetRole::retro_facet;
+  }
+
+  /// Returns true if a plane contains a side of a notch or hole.
+  bool is_open_side(const FacetPlane& plane) const {
+    return std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+      const auto height = [&](const Vec2& p) { return std::abs(plane.height({p.x(), p.y(), 0.0})); };
+      return !side.is_on_hull && std::abs(plane.normal.z()) < kLevel && plane.normal.head<2>().dot(side.normal) > 0.0 &&
+             height(side.from) <= 2.0 * tolerance_mm_ && height(side.to) <= 2.0 * tolerance_mm_;
+    });
   }
 
   /// Builds the back surface, and sets the heights and sizes of `part`.
@@ -246,7 +306,7 @@ class PartBuilder {
   void check_plate() const {
     for (const auto& t : back_)
       for (const std::uint32_t v : t)
-        if (settled_[v].z() >= top_z_)
+        if (settled_[v].z() >= top_z_ && side_of(t) == nullptr)
           throw InputError(
               "the mesh must have a plate: its back must be below the entrance face, but the back touches this face");
   }
@@ -257,13 +317,13 @@ class PartBuilder {
     double lowest = INFINITY;
     for (const auto& t : back_)
       for (const std::uint32_t v : t) {
-        highest = std::max(highest, settled_[v].z());
+        if (settled_[v].z() < top_z_) highest = std::max(highest, settled_[v].z());
         lowest = std::min(lowest, settled_[v].z());
       }
     for (Vec3& p : settled_) p.z() -= highest;
     for (FacetPlane& plane : planes) plane.offset_mm -= highest * plane.normal.z();
     part.thickness_mm = top_z_ - highest;
-    part.top_mm = 0.0;
+    part.top_mm = pieces_.empty() ? 0.0 : part.thickness_mm;
     part.element_depth_mm = highest - lowest;
   }
 
@@ -272,7 +332,7 @@ class PartBuilder {
     const RegionTriangles needed =
         without_redundant_vertices(settled_, {back_, regions.region_of}, regions.planes, rounding_mm_);
     std::vector<FacetRole> roles;
-    for (const FacetPlane& plane : regions.planes) roles.push_back(role_of(plane.normal));
+    for (const FacetPlane& plane : regions.planes) roles.push_back(role_of(plane));
     const std::vector<std::uint32_t> element_of =
         elements_of_regions(settled_, needed, regions.planes, roles, rounding_mm_);
     std::map<std::uint32_t, std::vector<RegionPolygon>> elements;
@@ -332,7 +392,9 @@ class PartBuilder {
   double top_z_ = 0.0;
   double tolerance_mm_ = 0.0;
   double rounding_mm_ = 0.0;
-  Polygon outline_;
+  Polygon outline_;              ///< convex outline, or the convex hull of an outline with notches or holes
+  std::vector<Polygon> loops_;   ///< borders of the entrance face: the outer border and those of holes
+  std::vector<Polygon> pieces_;  ///< convex pieces of an entrance face with notches or holes; otherwise empty
   std::vector<Side> sides_;
   std::vector<Vec3> settled_;
   std::vector<VertexConstraint> freedom_;
@@ -389,8 +451,8 @@ TriangleMesh with_reversed_orientation(const TriangleMesh& mesh) {
   return turned;
 }
 
-Part part_of_mesh(const TriangleMesh& mesh) {
-  return PartBuilder(mesh).build();
+Part part_of_mesh(const TriangleMesh& mesh, std::optional<double> rounding_mm) {
+  return PartBuilder(mesh, rounding_mm).build();
 }
 
 }  // namespace retrace::geometry

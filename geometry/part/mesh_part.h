@@ -34,18 +34,19 @@ TriangleMesh with_reversed_orientation(const TriangleMesh& mesh);
 
 /// Builds a part that has the shape of a closed mesh. The x and y coordinates of the mesh are kept. The mesh is shifted
 /// along z so that the highest point of the back has z = 0. The highest face of the mesh becomes the entrance face: it
-/// must be horizontal and have a convex outline. The rest of the mesh must be below the entrance face and within its
-/// outline, and the sides are therefore vertical.
+/// must be one horizontal face, which may have notches and holes. The rest of the mesh must be below the entrance face
+/// and within its outline, and the sides are therefore vertical.
 ///
 /// The facets are the plane regions of the back; how a region is triangulated has no effect. Horizontal regions become
 /// flat back, vertical regions become walls, and all other regions become retro facets. A region that is not convex is
 /// stored as several facets in the same plane. elements_of_regions() determines which facets form an element.
 ///
-/// Meshes are often stored in single precision. A vertex near the plane of the entrance face or of a side is therefore
-/// moved onto that plane. The maximum distance is about 1e-6 of the size of the mesh. Vertices of the back are also
-/// moved onto the planes of their facets, typically by less than 5e-7 of the largest coordinate.
-/// \pre the mesh is closed, its normals point outward, and it does not intersect itself (check_boundary())
-/// \throw InputError if the mesh does not have the shape described above
-Part part_of_mesh(const TriangleMesh& mesh);
+/// Meshes are often stored in single precision, which is the default of `rounding_mm`. A vertex near the plane of the
+/// entrance face or of a side is therefore moved onto that plane. The maximum distance is about 1e-6 of the size of the
+/// mesh. Vertices of the back are also moved onto the planes of their facets, typically by less than 5e-7 of the
+/// largest coordinate. \param rounding_mm maximum error of a vertex \pre the mesh is closed, its normals point outward,
+/// and it does not intersect itself (check_boundary()) \throw InputError if the mesh does not have the shape described
+/// above
+Part part_of_mesh(const TriangleMesh& mesh, std::optional<double> rounding_mm = {});
 
 }  // namespace retrace::geometry

@@ -47,6 +47,7 @@ void add_surface(Part& part, const FacetPlanes* planes, const Vec2& origin_mm, d
   add_array(part, sheet, planes, origin_mm, elements_per_patch);
   if (part.elements_full < 1) throw InputError("the array is smaller than one element");
   if (part.spec.substrate || planes != nullptr || part.spec.random_tilts.sigma_arcmin > 0.0) return;
+  if (!sheet.lattice.repeats) return;
   if (sheet.outline == nullptr) return find_lattice_region(part, sheet, origin_mm);
   const Vec2 period_mm = make_lattice(part.spec, true).period_mm;
   for (const Polygon& piece : sheet.outline->whole.pieces)
@@ -55,8 +56,8 @@ void add_surface(Part& part, const FacetPlanes* planes, const Vec2& origin_mm, d
 
 /// Returns true if the back surface has the nominal heights.
 bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
-  return planes == nullptr && !spec.substrate && !(spec.random_tilts.sigma_arcmin > 0.0) && spec.edges.is_sharp() &&
-         spec.scratches.empty();
+  return planes == nullptr && !spec.substrate && !std::holds_alternative<RuledCells>(spec.element) &&
+         !(spec.random_tilts.sigma_arcmin > 0.0) && spec.edges.is_sharp() && spec.scratches.empty();
 }
 
 /// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of those

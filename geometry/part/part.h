@@ -37,10 +37,10 @@ struct LatticeRegion {
   std::array<Vec2, 2> periods_mm;  ///< two lattice vectors at right angles to each other
 };
 
-/// Opening in a plane above the entrance face, such as the edge of a mount.
+/// Opening in an opaque plane above the entrance face, such as the edge of a mount.
 struct FaceOpening {
-  Polygon outline;         ///< convex, counter-clockwise
-  double height_mm = 0.0;  ///< height of the plane above the entrance face, >= 0
+  Polygon outline;         ///< convex border of the opening, counter-clockwise
+  double height_mm = 0.0;  ///< height of the plane of the opening above the entrance face, >= 0
 };
 
 /// Solid part in the part frame. It is a plate 0 <= z <= thickness with the flat entrance face z = thickness and the
@@ -65,10 +65,10 @@ struct Part {
   /// the outline is the entrance face. The sides that are not on the hull are then facets of the back surface, with the
   /// role `side`, and `top_mm` is the height of the entrance face.
   std::vector<Polygon> entrance_pieces;
-  /// Convex area of the entrance face inside a chamfer. Light that meets the face outside this area is stopped. Empty:
-  /// there is no chamfer.
+  /// Convex area of the entrance face inside the chamfer. Light that meets the face outside this area is blocked.
+  /// Empty: there is no chamfer.
   Polygon clear_face;
-  /// Opening of the mount, through which light must pass on its way to the entrance face and on its way back.
+  /// Opening of the mount. Incident and returning light must pass through it.
   std::optional<FaceOpening> mount;
   /// Period of an infinite part. The surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y.
   std::optional<Vec2> period_mm;

@@ -83,7 +83,7 @@ void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
 }
 
 FacetRole role_of(const Cell& cell, const CellFacet& facet) {
-  return cell.is_element || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
+  return (cell.is_element && !facet.is_flat) || facet.is_edge ? FacetRole::retro_facet : FacetRole::flat_back;
 }
 
 class Tiler {
@@ -420,7 +420,7 @@ class Tiler {
   double covered_mm2_ = 0.0;
 };
 
-/// Adds the chamfer and the mount of a round cube corner.
+/// Adds the chamfer and the mount of a round cube corner to a part.
 /// \param apex_mm position of the apex in plan
 void add_stops(Part& part, const RoundCube& cube, const Vec2& apex_mm) {
   if (cube.chamfer_mm > 0.0) part.clear_face = polygon_of_circle(apex_mm, cube.diameter_mm - 2.0 * cube.chamfer_mm);

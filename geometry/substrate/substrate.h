@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/math/formula.h"
+#include "geometry/surface/step_face.h"
 
 namespace retrace::geometry {
 
@@ -48,7 +49,7 @@ struct OffsetSubstrate {
 };
 
 using SubstrateShape =
-    std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate, OffsetSubstrate>;
+    std::variant<PlaneSubstrate, CylinderSubstrate, SphereSubstrate, FormulaSubstrate, OffsetSubstrate, StepFace>;
 
 /// Orientation of elements on a substrate.
 enum class ElementAxes {

@@ -59,6 +59,12 @@ Sag sag_of(const FormulaSubstrate& formula) {
   return sag;
 }
 
+Sag sag_of(const StepFace& face) {
+  Sag sag;
+  sag.patches = patches_of(face);
+  return sag;
+}
+
 /// Returns an empty sag, because an offset substrate is evaluated from the entrance surface instead.
 Sag sag_of(const OffsetSubstrate&) {
   return {};
@@ -235,7 +241,7 @@ Jet SubstrateSurface::at(const Vec2& plan) const {
   constexpr double kSteepBeyond = 4.0;
   Vec2 from = short_of_upright(substrate_.shape, plan);
   Jet jet = jet_at(from);
-  if ((sag_.formula || is_offset()) && (!jet.is_finite() || std::hypot(jet.x, jet.y) >= kSteepBeyond)) {
+  if ((sag_.formula || sag_.patches || is_offset()) && (!jet.is_finite() || std::hypot(jet.x, jet.y) >= kSteepBeyond)) {
     from = plan.cwiseMax(-half_mm_).cwiseMin(half_mm_);
     jet = jet_at(from);
   }
@@ -300,7 +306,7 @@ Vec2 SubstrateSurface::plan_of(const Vec2& arc) const {
                    const double row = std::sqrt(s.radius_mm * s.radius_mm - y * y);
                    return Vec2(row > 0.0 ? chord_of_arc(row, arc.x()) : 0.0, y);
                  },
-                 [&](const FormulaSubstrate&) {
+                 [&](const auto&) {
                    const double y = tables().along_y.place_at(arc.y(), middle_slope(*this));
                    return Vec2(tables().row(*this, y).place_at(arc.x(), row_slope(*this, y)), y);
                  },
@@ -321,7 +327,7 @@ Vec2 SubstrateSurface::arc_of(const Vec2& plan) const {
             const double row = std::sqrt(std::max(0.0, s.radius_mm * s.radius_mm - plan.y() * plan.y()));
             return Vec2(row > 0.0 ? arc_of_chord(row, plan.x()) : 0.0, arc_of_chord(s.radius_mm, plan.y()));
           },
-          [&](const FormulaSubstrate&) {
+          [&](const auto&) {
             return Vec2(tables().row(*this, plan.y()).arc(plan.x(), row_slope(*this, plan.y())),
                         tables().along_y.arc(plan.y(), middle_slope(*this)));
           },

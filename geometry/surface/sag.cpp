@@ -5,6 +5,7 @@
 
 #include "core/math/formula_evaluation.h"
 #include "core/math/interval.h"
+#include "geometry/surface/patch_surface.h"
 
 namespace retrace::geometry {
 namespace {
@@ -114,7 +115,8 @@ T Sag::evaluate_without_formula(const T& x, const T& y) const {
 
 template <class T>
 T Sag::evaluate(const T& x, const T& y) const {
-  const T z = evaluate_without_formula(x, y);
+  T z = evaluate_without_formula(x, y);
+  if (patches) z = z + patches->evaluate(x, y);
   return formula ? z + evaluate_formula(*formula, x, y, position_mm) : z;
 }
 

@@ -4,6 +4,7 @@
 // with derivatives.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "core/math/partials.h"
 
 namespace retrace::geometry {
+
+class PatchSurface;
 
 /// Height with its first and second derivatives in x and y.
 using Jet = jets::Partials<2>;
@@ -63,12 +66,13 @@ struct Sag {
   std::optional<XyPolynomial> polynomial;
   std::optional<Biconic> biconic;
   std::optional<Formula> formula;
-  std::array<double, 2> position_mm{};  ///< position of a lenslet: cx and cy of the formula
+  std::shared_ptr<const PatchSurface> patches;  ///< null if there are none
+  std::array<double, 2> position_mm{};          ///< position of a lenslet: cx and cy of the formula
 
   /// Returns z at (x, y) with all derivatives of the type T. The result is NaN where the sag is undefined.
   template <class T>
   T evaluate(const T& x, const T& y) const;
-  /// Returns z without the formula. Only closed forms remain, which can be evaluated with intervals.
+  /// Returns z without the formula and the patches. Only closed forms remain, which can be evaluated with intervals.
   template <class T>
   T evaluate_without_formula(const T& x, const T& y) const;
 };
@@ -78,7 +82,7 @@ std::vector<std::string> sag_variables();
 
 /// Returns true if the sag is a polynomial.
 inline bool is_polynomial(const Sag& sag) {
-  return !sag.formula && !sag.biconic && sag.asphere.curvature_per_mm == 0.0 &&
+  return !sag.formula && !sag.patches && !sag.biconic && sag.asphere.curvature_per_mm == 0.0 &&
          sag.asphere.across == Asphere::Across::radius;
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/api.h"
 #include "requests/image.h"
+#include "requests/inspect.h"
 #include "requests/job.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
@@ -33,6 +34,7 @@ using FieldValue = std::variant<std::monostate, bool, double, std::string, std::
 RETRACE_API void assign(DetectorRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(CameraRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RoadRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(InspectRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(JobRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(FabricationRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(MetrologyRequest& request, std::string_view field, const FieldValue& value);

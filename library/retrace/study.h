@@ -34,8 +34,8 @@ struct StudyResult {
   std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/2 or retrace.optimum/1
   std::string csv;    ///< one line per point; after an optimisation, the Pareto front
   std::string table;  ///< summary as text
-  /// Plot of the study. A tolerance study plots the fraction of parts whose result is below a value. An optimisation
-  /// plots the objective of all evaluated designs. The plot is empty for sweeps.
+  /// Plot of the study. For a tolerance study: the fraction of parts whose result is below a value, as a function of
+  /// this value. For an optimisation: the objective of all evaluated designs. Empty for sweeps.
   Drawing drawing;
 };
 

@@ -53,7 +53,8 @@ Json materials_json(const materials::MaterialLibrary& library) {
   return list;
 }
 
-/// Returns the template of `retrace init`. If requested, an array is made infinite. A single element is not changed.
+/// Returns the template that `retrace init` writes for a kind of design. If `extent` requests it, arrays are made
+/// infinite.
 std::string template_of(const std::string& kind, const std::string& extent) {
   std::string text = design::design_template(kind);
   if (extent.empty() || extent == "finite") return text;

@@ -191,9 +191,11 @@ void bind_part(py::module_& module) {
       .def_readonly("section", &Inspection::section)
       .def_readonly("entrance_surface", &Inspection::entrance_surface)
       .def_readonly("shells", &Inspection::shells)
+      .def_readonly("pin_axes", &Inspection::pin_axes)
       .def_readonly("view", &Inspection::view);
-  module.def("inspect", [](const Design& design) {
-    return watched(py::none(), 0, [design](const Running&) { return inspect(design); });
+  request_class<InspectRequest>(module, "InspectRequest");
+  module.def("inspect", [](const Design& design, const InspectRequest& request) {
+    return watched(py::none(), 0, [design, request](const Running&) { return inspect(design, request); });
   });
   result_class<ExportResult>(module, "ExportResult");
   request_class<SolidRequest>(module, "SolidRequest");

@@ -249,7 +249,7 @@ class Design:
     def _repr_svg_(self) -> str | None:
         """Returns the plan of the design as SVG, which notebooks display."""
         try:
-            return _core.inspect(self._core).plan.svg() or None
+            return _core.inspect(self._core, _core.InspectRequest()).plan.svg() or None
         except (InputError, OSError):
             return None
 

@@ -94,7 +94,7 @@ class MaterialResult(Result):
 
 class Inspection(Result):
     """Properties of a design that need no ray tracing. The drawings are "plan", "section",
-    "entrance_surface", "shells" and "view"."""
+    "entrance_surface", "shells", "pin_axes" and "view"."""
 
     _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
 
@@ -145,11 +145,15 @@ def export_material(
         )
 
 
-@described({})
-def inspect(design: AnyDesign) -> Inspection:
+@described(FIELDS["inspect"])
+def inspect(
+    design: AnyDesign,
+    **fields: object,  # generated: keywords of the request inspect
+) -> Inspection:
     """Computes properties of a design that need no ray tracing, like the command `retrace inspect`.
-    Examples are counts, areas and limits of total reflection."""
-    core = _core.inspect(design_of(design)._core)
+    Examples are counts, areas, limits of total reflection, the smallest wall and the draft."""
+    request = _core.InspectRequest()  # generated: sets the fields of the request inspect
+    core = _core.inspect(design_of(design)._core, request)
     return Inspection(
         core,
         drawings={
@@ -157,6 +161,7 @@ def inspect(design: AnyDesign) -> Inspection:
             "section": core.section,
             "entrance_surface": core.entrance_surface,
             "shells": core.shells,
+            "pin_axes": core.pin_axes,
             "view": core.view,
         },
     )

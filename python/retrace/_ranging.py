@@ -27,14 +27,14 @@ def _columns(text: str) -> dict[str, Array]:
 
 
 class CrossSectionMap:
-    """Cross section over the far field, as seen from the source. Maps have one row per angle up and
-    one column per angle to the right."""
+    """Cross section of the first point over the far field. Angles are seen from the source. Each
+    row of a map has one angle up, and each column has one angle to the right."""
 
     right_arcsec: Array  #: angles to the right from the direction to the source, ascending
-    up_arcsec: Array  #: angles up, ascending
-    total_m2: Array  #: cross section for all polarisations of the returned light
-    parallel_m2: Array  #: light with the polarisation that was sent; NaN for unpolarised light
-    crossed_m2: Array  #: light with the orthogonal polarisation; NaN for unpolarised light
+    up_arcsec: Array  #: angles up from the direction to the source, ascending
+    total_m2: Array  #: cross section of all returned light
+    parallel_m2: Array  #: component with the transmitted polarisation; NaN if unpolarised
+    crossed_m2: Array  #: component with the orthogonal polarisation; NaN if unpolarised
 
     def __init__(self, text: str) -> None:
         """text: table of the map as CSV."""
@@ -54,17 +54,17 @@ class CrossSectionMap:
 
 
 class RangingResult(Result):
-    """Cross sections of a cube corner, or of an array of cube corners. Arrays have one value per
-    wavelength and direction of light."""
+    """Cross sections of a cube corner, or of an array of cube corners. The columns of `points` have
+    one value for each wavelength and direction of light."""
 
     _rows = "points"
     _told = ("wavelength_nm",)
 
     points: Columns
     complete: bool
-    cubes: dict[str, Array]  #: lit cubes of an array for the first point; empty for a single cube
-    response: dict[str, Array]  #: response to a pulse for the first point; empty without a pulse
-    shots: dict[str, Array]  #: single shots for the first point; empty without shots
+    cubes: dict[str, Array]  #: illuminated cubes of the first point; empty for a single cube
+    response: dict[str, Array]  #: response of the first point to a pulse; empty without a pulse
+    shots: dict[str, Array]  #: single shots of the first point; empty without shots
 
     def __init__(self, core: Any) -> None:
         super().__init__(
@@ -99,10 +99,10 @@ def ranging(
     threads: int | None = None,
     progress: Progress = None,
 ) -> RangingResult:
-    """Computes the optical cross section 4 pi R_I of a single cube corner with diffraction and
-    polarisation, and its range correction, like the command `retrace ranging`.
+    """Computes the optical cross section and the range correction of a single cube corner, like the
+    command `retrace ranging`. Diffraction and polarisation are included.
 
-    cubes: file with the cubes of an array, which share this design. threads: maximum number of
+    cubes: file with the cubes of an array, which all have this design. threads: maximum number of
     threads [all cores]."""
     taken = design_of(design)
     request = _core.RangingRequest()  # generated: sets the fields of the request ranging

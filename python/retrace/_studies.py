@@ -105,8 +105,8 @@ class ToleranceResult(Result):
 
 
 class Optimum(Result):
-    """Best design within constraints. `pareto` contains the rows of the Pareto front, and `designs`
-    all evaluated designs, which are the data of the plot."""
+    """Best design that satisfies all constraints. `pareto` contains the designs of the Pareto
+    front. `designs` contains all evaluated designs, which the plot shows."""
 
     _rows = "pareto"
     _told = ("title", "objective_at_best")
@@ -122,8 +122,8 @@ class Optimum(Result):
 
     @property
     def designs(self) -> Columns:
-        """All evaluated designs: parameters, quantities with standard errors, the objective, and
-        whether the design satisfies all constraints (`feasible`)."""
+        """All evaluated designs: parameters, quantities with standard errors, and the objective.
+        `feasible` is true if a design satisfies all constraints."""
         return Columns(self.document["designs"])
 
     def _repr_svg_(self) -> str | None:

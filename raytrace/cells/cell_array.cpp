@@ -14,6 +14,8 @@ namespace {
 // Number of periods on each side, in x and y, in which the neighbours of a cell are searched. A cell extends less than
 // one period beyond the period that it belongs to.
 constexpr int kReach = 2;
+// Maximum number of cells per period. The time to find the neighbours increases as the square of this number.
+constexpr std::size_t kMaxCells = 500;
 
 CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole role) {
   const geometry::HeightPlane& plane = facet.plane;
@@ -104,6 +106,13 @@ double CellArray::Column::height(const Vec2& p) const {
 std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   if (!part.period_mm && !part.lattice_region_mm) return std::nullopt;
   geometry::Lattice lattice = geometry::make_lattice(part.spec, true);
+  // All facets of a column have the same role.
+  const auto has_flats = [](const geometry::Cell& cell) {
+    return std::any_of(cell.facets.begin(), cell.facets.end(),
+                       [](const geometry::CellFacet& facet) { return facet.is_flat; });
+  };
+  if (lattice.cells.size() > kMaxCells || std::any_of(lattice.cells.begin(), lattice.cells.end(), has_flats))
+    return std::nullopt;
   const double tolerance_mm = 1e-9 * lattice.period_mm.maxCoeff();
   const std::size_t cells = lattice.cells.size();
   lattice.cells = convex_cells(lattice.cells, tolerance_mm);

@@ -61,7 +61,8 @@ class CellArray {
   };
 
   /// Returns the array, or nothing if it cannot be used. This is the case for a single element, elements that differ,
-  /// arrays without an inner region, and cube corners with rounded rims.
+  /// arrays without an inner region, cube corners with rounded rims, and ruled cells with flat portions or more than
+  /// 500 cells per period.
   static std::optional<CellArray> make(const geometry::Part& part);
 
   const std::vector<Column>& columns() const { return columns_; }

@@ -16,15 +16,16 @@ constexpr double kNsPerLook = 30.0;
 /// Time in ns per unit of work when stochastic beams (resampled beams) are traced. These beams are fewer and wider than
 /// exact beams.
 constexpr double kNsPerStochasticLook = 15.0;
-/// Expected work of stochastic beams until they reach the default target error, used before their first round. The work
-/// is greater for prisms. Light that enters a prism obliquely travels far, and only a small fraction of it returns.
+/// Expected work of stochastic beams before their first round. After a round, StochasticBeams predicts the total work.
+/// The work is greater for prisms. Light that enters a prism obliquely travels far, and only a small fraction of it
+/// returns.
 constexpr double kLooksForCubes = 300'000.0;
 constexpr double kLooksForPrisms = 1'000'000.0;
-/// Number of facets per cell above which stochastic beams need more work. Above this number, the work is proportional
-/// to the number of facets to the power of kGrowthWithFacets. A cell with rounded edges and 24 facets needs 300 times
-/// the work of a cell with sharp edges.
+/// Number of facets per cell above which the first round needs more work. Above this number, its work is proportional
+/// to the number of facets to the power of kGrowthWithFacets. The total work of cells with rounded edges varies more:
+/// it is up to 30 times smaller or 3 times greater than that of rays. Only the first round shows which case applies.
 constexpr double kFewFacets = 4.0;
-constexpr double kGrowthWithFacets = 3.0;
+constexpr double kGrowthWithFacets = 1.5;
 /// Minimum time of exact beams, as a fraction of the predicted time of stochastic beams or rays. Exact beams are
 /// granted this time even if their own predicted time is longer, because that prediction may be poor.
 constexpr double kHedge = 0.2;

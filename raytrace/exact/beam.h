@@ -222,7 +222,7 @@ Corners lifted(const FlatPolygon& polygon, const Frame& frame, const Distance& d
 /// Returns the part of a polygon where `plane.height` >= 0. The result is empty if there is no such part.
 Corners cut(const Corners& corners, const Plane& plane);
 
-/// Returns the portion of a polygon whose projection along z is inside a convex outline.
+/// Returns the portion of a polygon that is inside a convex outline in plan view (projection along z).
 Corners cut_to_outline(Corners corners, const geometry::Polygon& outline);
 
 /// Returns the mean over a polygon of exp(-absorption * path length). The result is exact except for rounding.

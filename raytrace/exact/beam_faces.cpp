@@ -15,7 +15,7 @@ using geometry::FacetRole, surface_models::Lobe;
 
 // Maximum number of steps of a nearly horizontal beam between two interfaces.
 constexpr std::uint32_t kMaxLevelSteps = 1000;
-// Number of hull faces above which leave_hull() first discards the faces that a fragment does not meet.
+// If more than this number of faces may be met, leave_hull() first discards the faces that the fragment cannot reach.
 constexpr std::size_t kManyExits = 8;
 
 /// Returns the power of a fragment at the plane where the beam starts.
@@ -150,8 +150,8 @@ struct Exit {
 };
 using Exits = boost::container::small_vector<Exit, 8>;
 
-/// Removes the planes that a fragment does not meet, because the whole fragment reaches another plane earlier. This is
-/// frequent for a cylinder, which consists of many planes.
+/// Removes planes that a fragment cannot reach, because the whole fragment meets another plane before. Cylinders are
+/// approximated by many planes, of which most are removed.
 void discard_unreached(const FlatPolygon& polygon, double merge_mm, Exits& exits) {
   if (exits.size() <= kManyExits) return;
   const auto range_of = [&](const Exit& exit) {
@@ -229,13 +229,13 @@ void stop_at_horizon(const BeamStep& step, const Fragment& fragment) {
     step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
 }
 
-/// Returns true if a facet belongs to a cell of the back. The sides of a larger part, which an excerpt contains as
-/// facets, belong to no cell.
+/// Returns true if a facet is part of a cell of the back surface. An excerpt also contains sides of the larger part as
+/// facets, which are not part of a cell.
 bool counts_as_cell(const BeamScene& scene, const Candidate& facet) {
   return scene.policy.excerpt == nullptr || scene.policy.excerpt->kind_of(facet.cell) != geometry::ExcerptCell::side;
 }
 
-/// Returns true if light is traced further after it has met its first cell.
+/// Returns true if light whose first cell is `cell` is traced further. In an excerpt, only the light of one element is.
 bool is_traced(const BeamStep& step, const CellInstance& cell) {
   const ExcerptLight* const excerpt = step.scene.policy.excerpt;
   if (excerpt == nullptr) return true;

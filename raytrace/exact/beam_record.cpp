@@ -33,7 +33,8 @@ void BeamRecord::enter() {
   if (observer_ && entry.reflected.i > 0.0) observe_entrance_reflection();
 }
 
-/// Records the incident light that does not enter the part because of stops, the entrance face or its layers.
+/// Records the incident light that the stops block and the light that the entrance face and its layers reflect or
+/// absorb.
 void BeamRecord::enter_past_stops() {
   const LightSetup::Entry& entry = scene_.setup.entry;
   const LitFace lit(scene_);
@@ -72,7 +73,7 @@ void BeamRecord::leave_through_entrance(const Beam& beam, CoherentLight light, c
     record_leaving(passing, light, direction);
 }
 
-/// Records light that has left through the entrance face and passed the mount.
+/// Records light that has left through the entrance face and is not blocked by the mount.
 void BeamRecord::record_leaving(const Beam& beam, CoherentLight light, const Vec3& direction) {
   tally_.add(scene_.setup.pass_shells_outward(light, direction), Account::returned_elsewhere,
              beam.instance_count() * transmission_of(beam));
@@ -117,7 +118,7 @@ ReturnedBeam BeamRecord::returned_beam(const Beam& beam, CoherentLight light, co
   return returned;
 }
 
-/// Returns the light that the entrance face reflects. The polygon of the returned beam is not set.
+/// Returns the beam that the entrance face reflects, without its polygon.
 ReturnedBeam BeamRecord::reflection_of_face() const {
   const LightSetup::Entry& entry = scene_.setup.entry;
   ReturnedBeam front;

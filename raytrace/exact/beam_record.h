@@ -41,9 +41,9 @@ class BeamRecord {
   /// Records light that leaves through the entrance face.
   /// \param direction direction of the light in air
   void leave_through_entrance(const Beam& beam, CoherentLight light, const Vec3& direction);
-  /// Clips a beam on the entrance face to a convex area. The area is relative to the centre of the face. The light
-  /// outside this area is added to `stopped`. Returns false if nothing of the beam remains.
-  /// \param power power of the light, divided by transmission_of(beam)
+  /// Clips a beam on the entrance face to a convex polygon. The polygon is relative to the centre of the face. The
+  /// power of the clipped light is added to `stopped`. Returns false if the beam is completely outside the polygon.
+  /// \param power power of the beam before absorption in the part, that is, divided by transmission_of(beam)
   bool keep_within(Beam& beam, const geometry::Polygon& area, double power);
   /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.
   void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.instance_count() * power_of(beam); }

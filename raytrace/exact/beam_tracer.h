@@ -60,7 +60,8 @@ struct BeamPolicy {
   /// the textured facets that it has met, from which the far field computes specular and scattered light. It is allowed
   /// only for textures for which has_phases() is true.
   bool keeps_phases = false;
-  /// Set if the part is an excerpt of a larger part. It must outlive the trace.
+  /// Selects the traced light if the part is an excerpt of a larger part; null for a complete part. It must outlive the
+  /// trace.
   const ExcerptLight* excerpt = nullptr;
 };
 

@@ -140,17 +140,24 @@ double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
   const double next = next_threshold();
   // Kept beams that are also weaker than the next threshold are resampled again. The number of their survivors is
-  // inversely proportional to the threshold. In an array with many elements, all beams may be weaker than the next
-  // threshold.
+  // inversely proportional to the threshold, but not greater than the number of these beams over all elements. In an
+  // array with many elements, all beams may be weaker than the next threshold.
   double still_weak = 0.0;
-  for (const Beam& beam : strong_->deferred())
-    if (strong_->power_for_cutoff(beam) < next) still_weak += beam.total_power();
+  double weak_beams = 0.0;
+  for (const Beam& beam : strong_->deferred()) {
+    if (strong_->power_for_cutoff(beam) >= next) continue;
+    still_weak += beam.total_power();
+    weak_beams += tracer_.part_.period_mm ? 1.0 : beam.instance_count();
+  }
+  const double survivors = std::min(still_weak / (kSurvivorPowerRatio * next), weak_beams);
   // Assumed exponent: the work of a round is proportional to threshold^-work_slope.
   constexpr double work_slope = 0.5;
-  const double more =
-      std::max(std::pow(threshold_ / next, work_slope), still_weak / (kSurvivorPowerRatio * next) / first_survivors_);
-  if (more * static_cast<double>(strong_->deferred().size()) > static_cast<double>(kMaxDeferred))
-    return std::numeric_limits<double>::infinity();
+  const double more = std::max(std::pow(threshold_ / next, work_slope), survivors / first_survivors_);
+  // Assumed exponent: the number of kept beams is proportional to threshold^-deferred_slope. It grows more slowly than
+  // the work, because equal elements share beams. If it exceeds the maximum anyway, the rounds end.
+  constexpr double deferred_slope = 0.25;
+  const double deferred = static_cast<double>(strong_->deferred().size()) * std::pow(threshold_ / next, deferred_slope);
+  if (deferred > static_cast<double>(kMaxDeferred)) return std::numeric_limits<double>::infinity();
   return work() + static_cast<double>(beam_work_) * more +
          static_cast<double>(ray_work_) * ray_power_ / next_ray_power();
 }

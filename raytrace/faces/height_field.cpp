@@ -255,6 +255,7 @@ std::optional<EntranceHit> HeightField::first_hit(const SurfaceRay& ray) const {
   const auto span = span_of(ray, kRoom * part_mm);
   if (!span) return std::nullopt;
   auto [t, end] = *span;
+  if (t > end) return std::nullopt;
   Search search{*this, ray, ray.inside ? -1.0 : 1.0, ray.direction.head<2>().squaredNorm(), kSameHeight * part_mm,
                 -1.0};
   Walk walk(*this, ray, t);

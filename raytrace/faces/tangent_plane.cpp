@@ -93,8 +93,8 @@ std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurfac
   const Eigen::Matrix2d behind_plane =
       Eigen::Matrix2d::Identity() - lean(refracted_inside(slope, to_source, index)) * slope.transpose();
   if (!(behind_surface.determinant() > 0.0) || !(behind_plane.determinant() > 0.0)) return std::nullopt;
-  // Horizontal displacement of a point of the tangent plane, and the same displacement in the coordinates of this
-  // plane.
+  // Maps a horizontal displacement to the displacement of the point of the tangent plane above it, in the part frame.
+  // The next matrix contains the same displacement in the coordinates of the tangent plane.
   Eigen::Matrix<double, 3, 2> in_part;
   in_part << Eigen::Matrix2d::Identity(), slope.transpose();
   const Eigen::Matrix2d frame_from_plan = (plane.frame_from_part * in_part).topRows<2>();

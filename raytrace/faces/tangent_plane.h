@@ -40,15 +40,16 @@ Vec3 refracted_inside(const Vec2& slope, const Vec3& to_source, double index);
 std::optional<Vec2> point_of_entry(const geometry::EntranceSurface& surface, const Vec3& target_mm,
                                    const Vec3& to_source, double index);
 
-/// Returns the matrix K that describes how a curved surface displaces light relative to its tangent plane. Consider
-/// light that reaches a given point of a horizontal plane inside the part. If the surface were its tangent plane, this
-/// light would enter at the point e, relative to the tangent point. Through the curved surface, it enters at the point
-/// K e. K is computed from the directions of neighbouring rays after refraction. Its determinant is the ratio of the
-/// illuminance behind the surface to the illuminance behind the tangent plane. All coordinates are in the frame of the
-/// tangent plane. Returns nothing if the surface is not defined around the tangent point, or if the rays cross each
-/// other before they reach the horizontal plane.
+/// Returns the matrix K that describes how a curved surface shifts the points at which light enters. Consider light
+/// that reaches a given point of a horizontal plane inside the part. Through the tangent plane, this light would enter
+/// at the point e, relative to the tangent point. Through the curved surface, it enters at K e.
+///
+/// K is computed from neighbouring rays after refraction, in the frame of the tangent plane. Its determinant is the
+/// illuminance behind the surface divided by the illuminance behind the tangent plane. Returns nothing if the surface
+/// is not defined around the tangent point. Also returns nothing if the rays cross each other above the horizontal
+/// plane.
 /// \param height_mm height of the horizontal plane
-/// \param step_mm distance of the neighbouring rays from the tangent point
+/// \param step_mm distance from the tangent point to the neighbouring rays
 std::optional<Eigen::Matrix2d> entry_displacement(const geometry::EntranceSurface& surface, const TangentPlane& plane,
                                                   const Vec3& to_source, double index, double height_mm,
                                                   double step_mm);
@@ -78,7 +79,7 @@ struct SurfaceSag {
   surface_models::FacetForm form;  ///< sum of the terms, in the frame of the tangent plane
   double error_mm = 0.0;           ///< maximum difference from the surface at the sample points
 
-  /// Returns the matrix of second derivatives at the tangent point.
+  /// Returns the matrix of second derivatives of the height at the tangent point.
   Eigen::Matrix2d curvature_per_mm() const;
 };
 /// Fits a polynomial to the height of a surface above its tangent plane within a square about the tangent point. Points

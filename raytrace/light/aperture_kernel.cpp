@@ -11,9 +11,9 @@ using std::numbers::pi;
 
 // Ratio of radii below which the smaller disc is treated as a point.
 constexpr double kPoint = 1e-9;
-// Number of integration points along a radius, per width of the finest details of the averaged function. With 2.5
-// points, the error of the mean is below 3e-5 of the peak; with 2 points, it is 2e-3. kFewest and kMost are the minimum
-// and the maximum number of points.
+// Number of integration points along a radius, per angular width of the finest details of the integrand. With 2.5
+// points, the error of the mean is below 3e-5 of the maximum. With 2 points, it is 2e-3. kFewest and kMost are the
+// minimum and the maximum number of points.
 constexpr double kPointsAlongADetail = 2.5;
 constexpr double kFewest = 6.0;
 constexpr double kMost = 96.0;
@@ -70,7 +70,9 @@ GaussRule gauss_legendre(std::size_t count) {
 
 ApertureKernel::ApertureKernel(const PhotometricApertures& apertures)
     : larger_rad_(0.5 * std::max(apertures.source.rad(), apertures.receiver.rad())),
-      smaller_rad_(0.5 * std::min(apertures.source.rad(), apertures.receiver.rad())) {
+      smaller_rad_(0.5 * std::min(apertures.source.rad(), apertures.receiver.rad())),
+      source_rad_(0.5 * apertures.source.rad()),
+      receiver_rad_(0.5 * apertures.receiver.rad()) {
   if (smaller_rad_ < kPoint * larger_rad_) smaller_rad_ = 0.0;
 }
 

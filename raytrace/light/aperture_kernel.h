@@ -35,6 +35,8 @@ class ApertureKernel {
   double transform(double rad_per_rad) const;
   /// Returns the angular separation above which the density is 0.
   double reach_rad() const { return larger_rad_ + smaller_rad_; }
+  double source_radius_rad() const { return source_rad_; }
+  double receiver_radius_rad() const { return receiver_rad_; }
 
   struct Node {
     geometry::Vec2 offset_rad = geometry::Vec2::Zero();
@@ -48,6 +50,8 @@ class ApertureKernel {
  private:
   double larger_rad_ = 0.0;   ///< radius of the larger disc
   double smaller_rad_ = 0.0;  ///< radius of the smaller disc
+  double source_rad_ = 0.0;   ///< radius of the source's disc
+  double receiver_rad_ = 0.0;
 };
 
 /// Nodes and weights of the Gauss-Legendre rule on [0, 1].

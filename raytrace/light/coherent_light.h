@@ -16,8 +16,8 @@ namespace retrace::raytrace {
 /// materials::FresnelCoefficients.
 using JonesMatrix = Eigen::Matrix2cd;
 
-/// Returns the coherency matrix of light that travels away from the source, along the axes of the source. The second
-/// axis of the matrix is opposite to the p axis of this light.
+/// Returns the coherency matrix of light that travels away from the source. Rows and columns refer to the two axes of
+/// the source. The second axis points opposite to the p axis of this light.
 inline Eigen::Matrix2cd coherency_of_source(const Stokes& s) {
   Eigen::Matrix2cd c;
   c << s.i + s.q, std::complex<double>(s.u, -s.v), std::complex<double>(s.u, s.v), s.i - s.q;

@@ -21,7 +21,7 @@ enum class Account : std::size_t {
   lost,       ///< missed every face although it was inside the part; 0 unless there is a defect
   /// reflected at surfaces of shells (separate lenses in front of the part), and not traced further; 0 without shells
   shell_reflected,
-  stopped  ///< stopped by the mount or by the chamfer of the face; 0 if there is neither
+  stopped  ///< blocked by the mount or by the chamfer of the entrance face; 0 without mount and chamfer
 };
 
 inline constexpr std::size_t kAccountCount = 11;
@@ -34,8 +34,8 @@ inline constexpr std::array<std::string_view, kAccountCount> kAccountNames = {
     "retroreflected", "front_specular", "scattered_out", "returned_elsewhere", "side_exit", "transmitted",
     "absorbed",       "truncated",      "lost",          "shell_reflected",    "stopped"};
 
-/// Returns true if result files list this account. `shell_reflected` and `stopped` are not listed if their power is 0.
-/// All other accounts are always listed.
+/// Returns true if result files list an account. The accounts `shell_reflected` and `stopped` are listed only if their
+/// power is not 0. All other accounts are always listed.
 constexpr bool is_listed(Account account, double power) {
   return (account != Account::shell_reflected && account != Account::stopped) || power != 0.0;
 }

@@ -26,6 +26,8 @@ std::vector<std::int64_t> wave_key(const FieldPolygon& polygon, double same_mm) 
   return key;
 }
 
+}  // namespace
+
 field_lanes::Use use_of(std::size_t wave, const FieldPolygon& polygon) {
   field_lanes::Use use{wave, {}};
   for (Eigen::Index row = 0; row < 2; ++row)
@@ -37,8 +39,6 @@ field_lanes::Use use_of(std::size_t wave, const FieldPolygon& polygon) {
     }
   return use;
 }
-
-}  // namespace
 
 ApertureField::ApertureField(const std::vector<CoherentGroup>& groups, double wavelength_mm,
                              const Eigen::Matrix2cd& coherency, double same_mm, std::size_t replicates)

@@ -12,6 +12,10 @@
 
 namespace retrace::raytrace {
 
+/// Returns the contribution of a polygon to a field.
+/// \param wave index of the polygon's transform
+field_lanes::Use use_of(std::size_t wave, const FieldPolygon& polygon);
+
 /// Far-field power of groups of polygons as a function of the direction. A polygon is the part of the entrance face
 /// through which a plane wave leaves. The fields of the polygons of a group are added, and the powers of the groups are
 /// added. Different cells often have the same strong polygons and differ only in weak ones. The transform of a polygon

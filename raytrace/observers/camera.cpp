@@ -39,8 +39,8 @@ constexpr std::uint32_t kCameraCellStream = 14;
 constexpr std::uint32_t kGuideStream = 15;
 // Approximate number of paths per wavelength that the cell engine traces together.
 constexpr std::size_t kPathsTogether = 4096;
-// Pass number of the training pass of a PixelGuide. The training passes of PixelPoints have the next smaller numbers.
-// The passes of a picture are numbered from 0.
+// Number of the PixelGuide's training pass. The two training passes for PixelPoints have the preceding numbers. The
+// passes of a picture are numbered from 0, so these numbers do not occur there.
 constexpr std::uint32_t kTrainingPass = 0xffffffff;
 constexpr std::uint32_t kTrainingPassesOfPoints = 2;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
@@ -107,7 +107,8 @@ struct CameraTracer::Impl {
     const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
     return static_cast<std::uint32_t>(row * tiles_along + column);
   }
-  /// Returns true if all paths start outside of the part, where PathWalker::launch() finds the first surface.
+  /// Returns true if all paths start outside of the part. PathWalker::launch() then finds the first surface of each
+  /// path.
   bool launches_all() const { return entrance_face != nullptr || has_shells; }
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
   struct GuideTraining;
@@ -260,9 +261,9 @@ struct CameraTracer::Impl::Block {
     accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  /// Traces the light of one path from a point outside of the part. If the entrance face is curved or if there are
-  /// shells, this function is used for all paths. Otherwise, it is used for paths that do not meet the entrance face of
-  /// a part with notches or holes. Returns false if the light does not meet the part.
+  /// Traces the light of one path that starts outside of the part. Returns false if the light does not meet the part.
+  /// Behind a curved entrance face or shells, all paths start in this way. For a part with notches or holes, only the
+  /// paths that miss the entrance face do.
   bool launch(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample) {
     const double before = behind();
@@ -279,15 +280,16 @@ struct CameraTracer::Impl::Block {
     return true;
   }
 
-  /// Returns the power of light that the walker does not trace further because of shells. This light was reflected by a
-  /// shell, or it left the part and missed a shell.
+  /// Returns the power of light whose tracing ends at shells: light that a shell reflects, and light that leaves the
+  /// part and misses a shell.
   double stopped_at_shells() const {
     return tally.other[Account::shell_reflected] + tally.other[Account::returned_elsewhere];
   }
   /// Returns the power that has left through the sides and the back so far.
   double behind() const { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; }
 
-  std::vector<CameraSample> paths;  ///< samples of all paths; Impl::points contains the number for each pixel
+  /// samples of all paths, grouped by pixel; Impl::points contains the number of paths through each pixel
+  std::vector<CameraSample> paths;
   Tally tally{1};
   SensorAccumulator accumulator;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
@@ -423,7 +425,7 @@ void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block
 
 /// Traces one pass over the picture.
 /// \param training receives training samples for the guide; may be null
-/// \param moments receives the luminances of all paths, indexed by pixel; may be null
+/// \param moments receives sums over the luminances of all paths, indexed by pixel; may be null
 std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
                                                     GuideTraining* training, std::vector<PixelMoments>* moments) const {
   const std::size_t columns = scene.view.columns;

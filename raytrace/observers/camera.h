@@ -79,9 +79,9 @@ struct WeightedOptics {
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
 
-/// Result of one pass over a picture. It contains the luminances of all pixels (cd/m^2), then the fractions of all
-/// pixels that show the part, then the numbers of paths. Pixels are ordered row by row from the top. The last element
-/// is the luminance of paths through the part, summed over all pixels.
+/// Result of one pass over a picture. It contains three values per pixel: all luminances (cd/m^2), then all fractions
+/// that show the part, then all numbers of paths. Pixels are ordered row by row from the top. The last element is the
+/// luminance of paths through the part, summed over all pixels.
 using CameraPass = std::vector<double>;
 
 /// A picture that becomes more accurate with each pass. The passes are independent of each other.
@@ -97,25 +97,26 @@ struct CameraImage {
 
   /// Adds the pass with the number `passes`.
   void add(const CameraPass& pass);
-  /// Returns the standard error of a pixel, estimated from the spread of its passes. If a pixel shows the part and has
-  /// the minimum number of paths, its variance is at least the mean variance of the surrounding 5 x 5 pixels. Bright
-  /// paths are rare, and a pixel without such a path would otherwise have a standard error that is too small. If the
-  /// pixel has more than the minimum number of paths, its own variance and the mean variance are averaged with weights.
-  /// The weight of the pixel's own variance increases with the number of its paths.
+  /// Returns the standard error of a pixel, estimated from the differences between passes. Bright paths are rare. A
+  /// pixel without a bright path would have a standard error that is too small. The estimate therefore includes the
+  /// mean variance of the surrounding 5 x 5 pixels if the pixel shows the part:
+  /// - With the minimum number of paths, the pixel's variance is at least this mean variance.
+  /// - With more paths, the result is a weighted mean of both variances. The weight of the pixel's own variance
+  /// increases with the number of its paths.
   /// \pre passes > 1
   double std_error(std::size_t pixel) const;
-  /// Returns the number of paths through all pixels.
+  /// Returns the number of paths, summed over all pixels.
   double total_paths() const;
   /// Returns the mean luminance of the part; part_error() returns its standard error.
   double part_mean() const;
   double part_error() const;
-  /// Returns the mean standard error divided by the mean luminance, over the pixels that show only the part. For pixels
-  /// with more than the minimum number of paths, only their own passes are used. Including the neighbours would
-  /// overestimate the mean, because noisy pixels are often next to dark pixels.
+  /// Returns the mean standard error divided by the mean luminance, over all pixels that completely show the part. If a
+  /// pixel has more than the minimum number of paths, its standard error is estimated without its neighbours. Noisy
+  /// pixels are often next to dark pixels, and averaging over the neighbours would overestimate the mean error.
   double relative_noise() const;
 
  private:
-  /// Returns true if a pixel has more than the minimum number of paths.
+  /// Returns true if more than the minimum number of paths was traced through a pixel.
   bool has_more_paths(std::size_t pixel) const;
   /// Returns the squared standard error, estimated from the pixel's own passes.
   double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
@@ -135,7 +136,7 @@ enum class CameraEngine { fastest, embree };
 /// directions (docs/theory/images.md).
 class CameraTracer {
  public:
-  /// Minimum number of points per pixel and pass. The points of a pixel are evenly distributed.
+  /// Minimum number of points per pixel and pass. These points are evenly distributed over the pixel.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
   /// \param entrance_face curved entrance face of a finite part, as in MonteCarlo; null for the plane face. Parts with

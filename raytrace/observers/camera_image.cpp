@@ -1,4 +1,4 @@
-// Means and errors of camera pictures: the member functions of CameraImage.
+// Member functions of CameraImage, which compute means and errors of pictures.
 #include <algorithm>
 #include <cmath>
 
@@ -7,8 +7,8 @@
 namespace retrace::raytrace {
 namespace {
 
-// Weight of the neighbouring pixels in the estimate of a pixel's variance. The unit is the number of paths that show
-// the lamp. With fewer such paths, the variance of the pixel's own paths is uncertain.
+// Weight of the neighbouring pixels in the estimate of a pixel's variance, as a number of paths that show the lamp.
+// With fewer such paths, the variance of the pixel's own paths is uncertain.
 constexpr double kKnownHits = 4.0;
 
 }  // namespace
@@ -49,8 +49,8 @@ double CameraImage::std_error(std::size_t pixel) const {
   const double n = paths[pixel];
   if (!has_more_paths(pixel)) return std::sqrt(std::max(own, of_path / n));
   if (!(of_path > 0.0)) return std::sqrt(own);
-  // Number of paths of which kKnownHits are expected to show the lamp, if each path shows either a bright lamp or
-  // darkness.
+  // Number of paths among which kKnownHits paths are expected to show the lamp. The formula assumes that each path
+  // shows either a bright lamp or darkness.
   const double known = kKnownHits * (1.0 + of_path / (mean * mean));
   return std::sqrt((n * own + known * of_path / n) / (n + known));
 }

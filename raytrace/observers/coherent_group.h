@@ -43,6 +43,12 @@ struct FieldPolygon {
   std::vector<FieldHit> hits;
   double phase_variance = 0.0;  ///< variance of the phase that all textures of `hits` cause
   double mean_factor = 1.0;     ///< factor of the mean amplitude, exp(-phase_variance / 2)
+  /// Optical path relative to the first polygon of the group. The phase of `amplitude` contains it.
+  double path_mm = 0.0;
+  /// Light that leaves at a point r entered the entrance face at entry_mm + entry_slope * r. Both points are relative
+  /// to the reference point of the group.
+  geometry::Vec2 entry_mm = geometry::Vec2::Zero();
+  Eigen::Matrix2d entry_slope = Eigen::Matrix2d::Identity();
 };
 
 /// Light that interferes: the light of one cell on paths of nearly equal optical length.
@@ -52,6 +58,11 @@ struct CoherentGroup {
   double extent_mm = 0.0;  ///< diameter of a circle about the common centroid that contains all polygons
   /// Number of the replicate of a resampled beam. The powers of such a beam are divided by the number of replicates.
   std::optional<std::uint32_t> replicate = {};
+  /// Positions of the reference points of all copies in one period. They are set only if the light of different cells
+  /// interferes (FarFieldPolicy::interference).
+  std::vector<geometry::Vec2> positions_mm = {};
+  /// Optical path of the first polygon's light from the reference point on entry to the reference point on exit.
+  double path_mm = 0.0;
 
   double power() const;           ///< returns the power of all copies
   double specular_power() const;  ///< returns the power of the mean field of all copies

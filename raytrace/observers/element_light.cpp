@@ -18,16 +18,16 @@ using geometry::ElementExcerpt, geometry::PartElement, geometry::Polygon;
 
 // Maximum number of neighbours that bound the portion of an element. The nearest elements are used.
 constexpr std::size_t kMaxNeighbours = 48;
-// Maximum distance in plan between an element and the other cells of its excerpt. It is the sum of kSurroundings
-// element sizes and kReflectedReach times the distance from the entrance face to the lowest point of the element. Total
-// reflection at the entrance face can carry light far from the element. Behind a plane surface, light that leaves an
+// An excerpt contains all cells within a certain distance from its element in plan. This distance is kSurroundings
+// element sizes plus kReflectedReach times the depth of the element below the entrance face. It must be large, because
+// total reflection at the entrance face can carry light far from the element. For a plane surface, light that leaves an
 // excerpt of this size changes the returned power by less than 1e-4.
 constexpr double kSurroundings = 3.0;
 constexpr double kReflectedReach = 4.0;
 // Half width of the square in which a polynomial is fitted to the surface, relative to the largest coordinate of the
 // polygon from shadow_of().
 constexpr double kFittedWidth = 1.25;
-// Distance between the tangent point and the neighbouring rays in entry_displacement(), in element sizes.
+// Distance from the tangent point to the neighbouring rays of entry_displacement(), in element sizes.
 constexpr double kRayDistance = 0.05;
 // Area below which a polygon counts as empty, as a fraction of the squared element size.
 constexpr double kEmptyArea = 1e-9;
@@ -60,21 +60,21 @@ Polygon as_polygon(const FlatPolygon& polygon) {
 
 /// Vertical side of the part.
 struct Side {
-  Vec2 on_mm = Vec2::Zero();  ///< point of the side
+  Vec2 on_mm = Vec2::Zero();  ///< any point of the side, in plan
   Vec2 outward = Vec2::UnitX();
 
   double excess(const Vec3& p) const { return outward.dot(p.head<2>() - on_mm); }
 };
 
-/// Returns the corners of the mirror image of an element behind a side.
+/// Returns the corners of an element after reflection in the plane of a side.
 std::vector<Vec3> mirrored_at(const Side& side, std::vector<Vec3> corners_mm) {
   for (Vec3& p : corners_mm) p.head<2>() -= 2.0 * side.excess(p) * side.outward;
   return corners_mm;
 }
 
-/// Returns the corners of an element and of its mirror images behind sides that can reflect light to the element.
-/// Without a side, the light that this side reflects would travel straight to the mirror image. Up to two reflections
-/// are considered.
+/// Returns the corners of an element and of its mirror images at sides of the part. Light that a side reflects to the
+/// element would travel straight to the mirror image if the side were absent. Mirror images at up to two sides are
+/// included.
 /// \param reach_mm maximum horizontal distance that light travels before it meets the element
 std::vector<std::vector<Vec3>> images_of(const PartElement& element, const Polygon& outline, const Vec3& inside,
                                          double reach_mm) {
@@ -99,8 +99,8 @@ std::vector<std::vector<Vec3>> images_of(const PartElement& element, const Polyg
   return images;
 }
 
-/// Returns the mean height of those corners of an element that are on its outline, seen along the direction of the
-/// light. The outline of a cube corner is its rim.
+/// Returns the mean height of the element's corners that form its outline when seen along the light. For a cube corner,
+/// these corners form its rim.
 double rim_height(const std::vector<Vec3>& corners_mm, const Vec3& inside) {
   const auto seen = [&](const Vec3& p) { return Vec2((p - p.z() / inside.z() * inside).head<2>()); };
   std::vector<Vec2> points;
@@ -116,8 +116,8 @@ double rim_height(const std::vector<Vec3>& corners_mm, const Vec3& inside) {
   return sum / count;
 }
 
-/// Returns the convex hull of an element's corners after their projection onto the tangent plane, along the light
-/// inside the part. Without other elements, all light that enters through this hull would meet the element first.
+/// Returns the convex hull of an element's corners, projected onto the tangent plane along the light inside the part.
+/// If there were no other elements, all light that enters through this hull would meet the element first.
 /// \param inside direction of the light in the frame of the tangent plane
 Polygon shadow_of(const std::vector<Vec3>& corners_mm, const TangentPlane& plane, const Vec3& inside) {
   std::vector<Vec2> points;
@@ -128,8 +128,7 @@ Polygon shadow_of(const std::vector<Vec3>& corners_mm, const TangentPlane& plane
   return geometry::convex_hull(std::move(points));
 }
 
-/// Returns the excerpt around an element in the frame of its tangent plane. Its entrance face consists of the given
-/// polygons.
+/// Returns the excerpt around an element in the frame of its tangent plane. The given polygons form its entrance face.
 geometry::ElementExcerpt excerpt_with_face(const geometry::Part& part, const PartElement& own,
                                            const TangentPlane& plane, double thickness_mm, const FlatPolygons& pieces) {
   Eigen::Isometry3d frame_from_part = Eigen::Isometry3d::Identity();
@@ -152,8 +151,8 @@ geometry::ElementExcerpt excerpt_with_face(const geometry::Part& part, const Par
     }
   }
   made.outline = geometry::to_polygon(box);
-  // The exact engine divides the entrance face into fragments of the size of an element. This element is so large that
-  // every polygon of the entrance face remains a single fragment.
+  // The exact engine divides the entrance face into fragments of the size of an element. The size that is set here is
+  // so large that no polygon of the entrance face is divided.
   made.spec = {};
   made.spec.element = geometry::RtpElement{kFragment * largest_mm.x(), kFragment * largest_mm.y(), 90.0};
   return excerpt;
@@ -176,7 +175,7 @@ struct ElementLight::Bounds {
     cut(polygon, of_part, merge_mm);
     return polygon;
   }
-  /// Returns the bounds of points e from the bounds of the points K e, where K is the displacement matrix.
+  /// Returns bounds for points e whose displaced points K e satisfy the present bounds.
   Bounds before(const Eigen::Matrix2d& displacement) const {
     Bounds changed = *this;
     for (std::vector<HalfPlane>* const halves : {&changed.of_part, &changed.of_neighbours})
@@ -311,14 +310,14 @@ std::unique_ptr<const ElementScene> ElementLight::scene(std::size_t element, con
   if (!displacement) return nullptr;
   const double denser = displacement->determinant();
   if (denser > kMaxConcentration || denser < 1.0 / kMaxConcentration) return nullptr;
-  // The tracer uses the points where the rays cross the tangent plane, instead of the points where they enter the
-  // curved surface. For a convex surface, the crossing points cover a smaller area than the entry points.
+  // For each ray that enters through the curved surface, the tracer needs the point at which it would enter the tangent
+  // plane. For a convex surface, these points cover a smaller area.
   const Bounds model_bounds = bounds.before(*displacement);
   const FlatPolygon portion = model_bounds.lit(model_bounds.cell());
   scene->is_lit = portion.size() >= 3;
   if (!scene->is_lit) return scene;
-  // All light that meets the element first enters through the shadow of the element or of one of its mirror images.
-  // Light that enters between these shadows meets other elements first and is not traced (ExcerptLight).
+  // Light that meets the element first enters through the shadow of the element or through the shadow of a mirror
+  // image. Light that enters between these shadows meets other elements first and is not traced (ExcerptLight).
   const double height_mm = plane->point_mm.z() - own.lower_mm.z();
   const double reach_mm = height_mm * direction.head<2>().norm() / -direction.z();
   Polygon entries;
@@ -379,12 +378,12 @@ TexturedHit surface_hit(const ElementScene& scene, const ReturnedBeam& beam, dou
   return hit;
 }
 
-/// Convergence or divergence of light behind a curved surface. Let x be the point of the tangent plane at which light
-/// leaves. phi(x) is the optical path that the surface adds where the same light enters.
+/// Convergence or divergence of light behind a curved surface. phi is the optical path that the surface adds where
+/// light enters. It is a function of the point x of the tangent plane at which this light leaves.
 struct Convergence {
-  Eigen::Matrix2d second;  ///< second derivatives of phi
+  Eigen::Matrix2d second;  ///< matrix of the second derivatives of phi
   Vec2 first;              ///< gradient of phi at the centre of the entrance face
-  double path_mm = 0.0;    ///< path length inside the part, for light that leaves at the tangent point
+  double path_mm = 0.0;    ///< path length inside the part of light that leaves at the tangent point
 };
 
 Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, const TexturedHit& entry) {
@@ -393,8 +392,8 @@ Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, 
   const Eigen::Matrix2d gradients = entry.path_per_height * slope.transpose() * scene.sag.curvature_per_mm();
   of.second = gradients * slope;
   of.first = gradients * (beam.entry_from_exit.translation() + beam.centre_mm);
-  // Fragments of one wave must have consistent phases. The path is therefore computed for a fixed point and not for the
-  // centre of the beam's polygon.
+  // The path is computed for a fixed point and not for the centre of the beam's polygon. The phases of all fragments of
+  // a wave are therefore consistent.
   const Vec2 exit = -beam.centre_mm;
   of.path_mm = (beam.phase_mm + beam.direction.head<2>().dot(exit) +
                 scene.to_source.head<2>().dot(beam.entry_from_exit * exit)) /
@@ -402,10 +401,10 @@ Convergence convergence_of(const ElementScene& scene, const ReturnedBeam& beam, 
   return of;
 }
 
-/// Moves the exit polygon of a beam to the points where rays behind the curved surface leave. A path of the length L in
-/// the part displaces a ray by L grad phi / n, measured perpendicular to the light. The displacement up to the rim of
-/// the element is already included in the entry region. The remaining displacement changes the area of the polygon but
-/// not the power. The amplitude is therefore multiplied by the square root of the old area divided by the new area.
+/// Displaces the exit polygon of a beam to the points at which the light behind the curved surface leaves. After a path
+/// of length L, a ray is displaced by L grad phi / n, measured perpendicular to the light. The entry region already
+/// includes the displacement up to the rim of the element. The remaining displacement changes the area of the polygon
+/// at constant power. The amplitude is therefore multiplied by the square root of the old area divided by the new area.
 void move_exit(const ElementScene& scene, const Convergence& convergence, ReturnedBeam& beam) {
   const double length_mm = convergence.path_mm - scene.rim_path_mm;
   const Vec2 across = beam.direction.head<2>() / beam.index;
@@ -455,7 +454,7 @@ BeamResult trace_element(const ElementScene& scene, const Optics& optics, const 
     for (ShellSurface* const surface : {&shell.outer, &shell.inner}) surface->normal = scene.direction(surface->normal);
   const BeamTracer tracer(excerpt.part);
   return tracer.trace(own_optics, illumination, cones_deg, policy, cancel, [&](const ReturnedBeam& beam) {
-    // Light that met no cell is ignored. It has only been reflected by sides and by the entrance face.
+    // Light that met no cell is ignored: only sides and the entrance face have reflected it.
     if (beam.depth == 0 || !beam.trail.first) return;
     ReturnedBeam curved = beam;
     add_surface(scene, curved);

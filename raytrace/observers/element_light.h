@@ -34,11 +34,11 @@ struct ElementScene {
   SurfaceSag sag;
   surface_models::FacetForm squared_slope;  ///< see squared_slope(), for the light that enters
   Vec3 to_source = Vec3::UnitZ();           ///< in the frame of the excerpt
-  /// Portion of the element (ElementPortion). Its points are displaced to the points at which the same light would
-  /// enter through the tangent plane (entry_displacement()).
+  /// Portion of the tangent plane through which the light of the element would enter (ElementPortion,
+  /// entry_displacement()).
   geometry::Polygon portion_mm;
-  double rim_path_mm = 0.0;  ///< length of the light's path from the tangent plane to the element's rim
-  double fraction = 0.0;     ///< see ElementPortion::fraction
+  double rim_path_mm = 0.0;  ///< path length of the light from the tangent plane to the rim of the element
+  double fraction = 0.0;     ///< fraction of the light that is incident on the part, as in ElementPortion
   /// Factor by which powers of beams in the excerpt are multiplied to obtain fractions of the light that is incident on
   /// the part.
   double power_factor = 0.0;
@@ -88,7 +88,8 @@ class ElementLight {
   /// neighbouring elements.
   struct Bounds;
   std::optional<TangentPlane> plane_of(std::size_t element, const Vec3& to_source, double index) const;
-  /// \param tangent_points tangent points, in plan, of the neighbouring elements that have a tangent plane
+  /// \param tangent_points tangent points of the neighbouring elements, in plan; elements without a tangent plane are
+  ///     omitted
   Bounds bounds_of(const TangentPlane& plane, const Vec3& to_source, const std::vector<Vec2>& tangent_points) const;
   double fraction_per_mm2(const TangentPlane& plane, const Vec3& to_source) const;
 
@@ -105,10 +106,12 @@ class ElementLight {
 Illumination illumination_of(const ElementScene& scene, const Vec3& to_source, const Stokes& stokes);
 
 /// Traces the light of one element and passes its returned beams to the observer. A beam belongs to the element if the
-/// first facet that it met is a facet of this element. A beam that first met something other than an element belongs to
-/// the element through whose ElementScene::portion_mm it entered (ExcerptLight). Light that the outer side of the
-/// surface reflects is not included. The beams contain the curvature of the surface as hits with a form. Powers are
-/// fractions of the light that is incident on the excerpt, see ElementScene::power_factor.
+/// first facet that it met is a facet of this element. If its first cell is flat land, it belongs to the element
+/// through whose portion of the entrance face it entered (ExcerptLight). Light that is reflected at the outer side of
+/// the surface is not included.
+///
+/// Hits with a form describe the curvature of the surface in each beam. Powers are fractions of the light that is
+/// incident on the excerpt (ElementScene::power_factor).
 /// \param optics optical properties; shells must not deflect light
 /// \param policy policy for the beams; BeamPolicy::excerpt is ignored
 BeamResult trace_element(const ElementScene& scene, const Optics& optics, const Illumination& illumination,

@@ -6,9 +6,10 @@
 #include <numbers>
 
 #include "raytrace/light/light_setup.h"
+#include "raytrace/observers/distant_directions.h"
+#include "raytrace/observers/lattice_field.h"
 #include "raytrace/observers/small_angle.h"
 #include "raytrace/sampling/replicate_means.h"
-#include "raytrace/sampling/sobol.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -21,15 +22,15 @@ constexpr double kPointsToADetail = 1.5;
 // Number of lattice points per radius of a cone. A cone needs more points than a detail, because the lattice
 // approximates the edge of the cone in steps.
 constexpr double kPointsToARadius = 48.0;
-// Number of points for the integral of the density outside of a cone. kTailKey is the key of their scramble.
-constexpr std::uint32_t kTailPoints = 1U << 15;
-// Maximum distance of the kTailPoints points from the axis of the cone, in the plane of direction cosines.
-constexpr double kFarthestCosine = 20.0;
 // Maximum distance from the axis of the cone at which facet forms are taken into account, divided by the largest
 // deflection that the forms cause. At larger distances, the density is low, and forms change it only by a small
 // fraction.
 constexpr double kFarInBends = 4.0;
-constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
+// Number of diffraction orders of an array that are computed individually. The power of orders at larger angles is
+// computed as an integral.
+constexpr double kSingleOrders = 50'000.0;
+// Minimum radius of the circle of individual orders, as a multiple of the distance to the farthest point of a cone.
+constexpr double kBeyondCone = 1.1;
 
 /// Returns the derivatives of the direction cosines x and y with respect to the angles to the right and upwards.
 Eigen::Matrix2d axes_of(const ReturnFrame& frame) {
@@ -44,6 +45,14 @@ ReturnFrame frame_about(const Vec3& direction) {
   frame.right = source_axis(direction);
   frame.up = direction.cross(frame.right);
   return frame;
+}
+
+/// Returns true if the direction with the given direction cosines exists and is inside a cone about the direction to
+/// the source.
+bool is_in_cone(const Vec2& cosines, const ReturnFrame& frame, double half_angle_rad) {
+  const double height2 = 1.0 - cosines.squaredNorm();
+  return height2 > 0.0 &&
+         small_angle_between({cosines.x(), cosines.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
 }
 
 /// Returns the mean and the standard error over the replicates.
@@ -95,6 +104,9 @@ double FarField::detail_rad() const {
 /// predicts some light for cells that are not much larger than the wavelength.
 Eigen::ArrayXXd FarField::by_replicate(const std::vector<Vec2>& cosines, const ApertureField& field) const {
   Eigen::ArrayXXd power = field.per_cosines(cosines, cancel_);
+  if (lattice_ != nullptr)
+    for (std::size_t k = 0; k < cosines.size(); ++k)
+      power(static_cast<Eigen::Index>(k), 0) *= 1.0 - lattice_->coherent_fraction(cosines[k]);
   const std::vector<double> fringes = scattered_.fringes_per_cosines(cosines, cancel_);
   for (std::size_t k = 0; k < cosines.size(); ++k) power(static_cast<Eigen::Index>(k), 0) += fringes[k];
   return power;
@@ -153,6 +165,7 @@ FarFieldIntensity FarField::intensity(const Vec3& direction, const ApertureKerne
   for (std::size_t k = 0; k < nodes.size(); ++k)
     sums += nodes[k].weight *
             (per_cosines.row(static_cast<Eigen::Index>(k)).transpose() * std::max(0.0, directions[k].z()));
+  if (lattice_ != nullptr) sums[0] += lattice_->per_sr(direction.head<2>(), axes_of(frame), kernel, cancel_);
   return mean_of_replicates(sums);
 }
 
@@ -171,8 +184,27 @@ std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGr
     sums[bin] += power;
     inside += power;
   }
+  if (lattice_ != nullptr) inside += add_orders(frame, grid, sums);
   sums.back() += std::max(0.0, diffracted_power() + scattered_.power() - inside);
   return sums;
+}
+
+/// Adds the power of the diffraction orders to the bins of their directions, and returns the sum of the added powers.
+double FarField::add_orders(const ReturnFrame& frame, const DirectionGrid& grid, std::vector<double>& bins) const {
+  // Distance to the corners of a square grid.
+  const double radius =
+      std::min(1.0, kBeyondCone * std::numbers::sqrt2 * std::sin(std::min(grid.half_width_rad(), 1.0)));
+  double sum = 0.0;
+  for (const LatticeField::Order& order :
+       lattice_->orders_near(frame.to_source.head<2>(), radius, LatticeField::Light::band, cancel_)) {
+    const double height2 = 1.0 - order.cosines.squaredNorm();
+    if (!(height2 > 0.0)) continue;
+    const auto bin = grid.bin_of(frame.angles_rad({order.cosines.x(), order.cosines.y(), std::sqrt(height2)}));
+    if (!bin) continue;
+    bins[*bin] += order.power;
+    sum += order.power;
+  }
+  return sum;
 }
 
 FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad) const {
@@ -199,36 +231,43 @@ FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad)
     for (std::size_t k = 0; k < row.size(); ++k) split.inside += shares[k] * per_sr[k];
   }
   split.outside += tail(frame, half_angle_rad);
+  if (lattice_ != nullptr) {
+    const Split orders = split_orders(frame, half_angle_rad);
+    split.inside += orders.inside;
+    split.outside += orders.outside;
+  }
   return split;
 }
 
-/// Returns the diffracted power outside of a cone, integrated over the plane of direction cosines. The integration
-/// points are distributed uniformly in the logarithm of the distance from the axis, because the density decreases as a
-/// power of the distance.
+/// Returns the power of the diffraction orders inside and outside of a cone.
+FarField::Split FarField::split_orders(const ReturnFrame& frame, double half_angle_rad) const {
+  const Vec2 centre = frame.to_source.head<2>();
+  const double radius = std::max(lattice_->radius_of_orders(kSingleOrders), kBeyondCone * std::sin(half_angle_rad));
+  Split split;
+  for (const LatticeField::Order& order :
+       lattice_->orders_near(centre, radius, LatticeField::Light::single_wavelength, cancel_))
+    (is_in_cone(order.cosines, frame, half_angle_rad) ? split.inside : split.outside) += order.power;
+  split.outside += lattice_->power_beyond(centre, radius, cancel_);
+  return split;
+}
+
+/// Returns the diffracted power outside of a cone, integrated over the plane of direction cosines.
 double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
-  const Vec2 middle = frame.to_source.head<2>();
   // The outline of the cone in this plane is further from the axis than `nearest`.
   const double nearest = 0.9 * frame.to_source.z() * std::sin(half_angle_rad);
-  const double decades = std::log(kFarthestCosine / nearest);
-  const SobolSquare square(kTailKey, ~kTailKey);
   const bool is_far = !plane_groups_.empty() && nearest > kFarInBends * max_deflection_;
+  const DistantDirections distant(frame.to_source.head<2>(), nearest);
   std::vector<Vec2> outside;
   std::vector<double> areas;
-  for (std::uint32_t k = 0; k < kTailPoints; ++k) {
-    const auto [u, v] = square(k);
-    const double distance = nearest * std::exp(u * decades);
-    const Vec2 at = middle + distance * Vec2(std::cos(2.0 * pi * v), std::sin(2.0 * pi * v));
-    const double height2 = 1.0 - at.squaredNorm();
-    const bool is_inside =
-        height2 > 0.0 && small_angle_between({at.x(), at.y(), std::sqrt(height2)}, frame.to_source) <= half_angle_rad;
-    if (is_inside) continue;
-    outside.push_back(at);
-    areas.push_back(distance * distance);
+  for (std::size_t k = 0; k < distant.cosines.size(); ++k) {
+    if (is_in_cone(distant.cosines[k], frame, half_angle_rad)) continue;
+    outside.push_back(distant.cosines[k]);
+    areas.push_back(distant.areas[k]);
   }
   const std::vector<double> density = per_cosines(outside, is_far ? plane_field_ : field_);
   double sum = 0.0;
   for (std::size_t k = 0; k < density.size(); ++k) sum += areas[k] * density[k];
-  return 2.0 * pi * decades * sum / kTailPoints;
+  return distant.factor * sum;
 }
 
 }  // namespace retrace::raytrace

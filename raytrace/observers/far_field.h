@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,9 +14,12 @@
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/light/direction_score.h"
 #include "raytrace/observers/aperture_field.h"
+#include "raytrace/observers/cell_interference.h"
 #include "raytrace/observers/scattered_field.h"
 
 namespace retrace::raytrace {
+
+class LatticeField;
 
 /// Parameters of a far field.
 struct FarFieldPolicy {
@@ -40,6 +44,9 @@ struct FarFieldPolicy {
   /// outlive the collector. The form deflects diffracted light, and also the rays of cells that are too large to be
   /// diffracted.
   const surface_models::FacetForm* form = nullptr;
+  /// Interference of the light of different cells of an infinite part. Without a value, and for finite parts, the
+  /// intensities of different cells are added.
+  std::optional<CellInterference> interference = {};
   /// Request for cancellation, which is checked between polygons. After a cancellation, all results are invalid. The
   /// object must outlive the far field. It may be null.
   const Cancellation* cancel = nullptr;
@@ -67,6 +74,10 @@ struct FarFieldIntensity {
 /// width of a cell. By Fraunhofer diffraction at the entrance face, the far field of a beam is the Fourier transform of
 /// its polygon.
 ///
+/// Small cells that are cut with one height differ less. With FarFieldPolicy::interference, the far field consists of
+/// diffraction orders of the array (LatticeField) and of diffuse light, which has the intensities of the cells. The
+/// spread of the cells determines the fraction of both.
+///
 /// For beams that have met textures (ReturnedBeam::hits), the mean field is diffracted and the scattered light is added
 /// (ScatteredField; docs/theory/photometry.md). Both are averages over all possible heights of the texture.
 class FarField {
@@ -75,7 +86,8 @@ class FarField {
   /// \param kernel averages over the discs of source and receiver
   FarFieldIntensity intensity(const Vec3& direction, const ApertureKernel& kernel) const;
   /// Returns the intensity of only the diffracted light, per steradian, for a point source and a point receiver. This
-  /// light consists of the mean field and of the interference fringes of scattered light.
+  /// light consists of the mean field and of the interference fringes of scattered light. Diffraction orders of an
+  /// array are not included, because the intensity of a point source in an order is infinite.
   double diffracted_per_sr(const Vec3& direction) const;
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
   /// Returns the intensity of only the lobes of scattered light, per steradian, for a point source and a point
@@ -87,7 +99,7 @@ class FarField {
 
   /// Returns the power in each bin of a grid; the last element is the power outside of the grid. Undiffracted light is
   /// added to the bin of its direction. The power of diffracted light is its density at the centre of a bin times the
-  /// solid angle of the bin.
+  /// solid angle of the bin. Each diffraction order of an array is added to the bin of its direction.
   std::vector<double> binned(const ReturnFrame& frame, const DirectionGrid& grid) const;
 
   /// Power inside and outside of the cone about the direction to the source. The two values are integrated
@@ -121,6 +133,8 @@ class FarField {
   Eigen::ArrayXd lobes_by_replicate(const Vec3& direction, const ApertureKernel& kernel) const;
   std::vector<double> per_cosines(const std::vector<geometry::Vec2>& cosines, const ApertureField& field) const;
   double tail(const ReturnFrame& frame, double half_angle_rad) const;
+  Split split_orders(const ReturnFrame& frame, double half_angle_rad) const;
+  double add_orders(const ReturnFrame& frame, const DirectionGrid& grid, std::vector<double>& bins) const;
 
   double wavelength_mm_ = 0.0;
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
@@ -132,6 +146,8 @@ class FarField {
   ApertureField field_;        ///< field of groups_
   ApertureField plane_field_;  ///< field of plane_groups_
   double max_deflection_ = 0.0;
+  /// Diffraction orders of an array whose cells interfere. Null if the intensities of cells are added.
+  std::shared_ptr<const LatticeField> lattice_;
   std::vector<FarFieldRay> rays_;
   ScatteredField scattered_;
   double unplaced_power_ = 0.0;
@@ -166,6 +182,11 @@ class FarFieldCollector {
     double copies = 1.0;  ///< infinite parts: number of cells per period that return this beam
     std::vector<FieldHit> hits;
     std::optional<std::uint32_t> replicate;
+    /// Maps a point of the entrance face where light leaves to the point where it entered. Both points are relative to
+    /// the cell.
+    Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
+    std::vector<geometry::Vec2>
+        positions_mm;  ///< positions of the copies of the cell; see FarFieldPolicy::interference
   };
   /// Key of a wave: its direction, its field, and the points where it met facets with a form or a texture.
   using WaveKey = std::vector<std::int64_t>;
@@ -198,6 +219,8 @@ class FarFieldCollector {
 
   FarFieldPolicy policy_;
   bool is_infinite_ = false;
+  bool cells_interfere_ = false;
+  geometry::Vec2 period_mm_ = geometry::Vec2::Zero();  ///< period of an infinite part
   double size_mm_ = 0.0;
   double thickness_mm_ = 0.0;
   Vec3 to_source_;

@@ -14,6 +14,7 @@
 #include "raytrace/observers/error_free_exit.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/formed_aperture.h"
+#include "raytrace/observers/lattice_field.h"
 #include "raytrace/observers/small_angle.h"
 
 namespace retrace::raytrace {
@@ -85,8 +86,8 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
   return all;
 }
 
-/// Returns the number of copies of `group` that together have the power of `other`. Both groups have the same shape,
-/// but light that the entrance face has reflected on its way, or a resampled beam, may have any power. The number is
+/// Returns the number of copies of `group` that have the same total power as `other`. Both groups have the same shape.
+/// Their powers may differ if the entrance face has reflected the light, or if beams were resampled. The number is
 /// therefore not always an integer.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
@@ -98,6 +99,8 @@ FarFieldCollector::FarFieldCollector(const geometry::Part& part, const Illuminat
                                      const FarFieldPolicy& policy)
     : policy_(policy),
       is_infinite_(part.period_mm.has_value()),
+      cells_interfere_(policy.interference && part.period_mm),
+      period_mm_(part.period_mm.value_or(Vec2::Zero())),
       size_mm_(part.size_mm),
       thickness_mm_(part.thickness_mm),
       to_source_(direction_to_source(illumination)),
@@ -146,6 +149,14 @@ void FarFieldCollector::put(CollectedBeam piece, const ReturnedBeam& beam) {
   const auto number = static_cast<std::uint32_t>(beams_.size());
   CoherenceKey place = coherence_key_of(beam, piece);
   if (is_infinite_) piece.copies = beam.instance_count();
+  if (cells_interfere_) {
+    const Vec2 first = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
+    piece.positions_mm = {first};
+    if (beam.instance_offsets) {
+      piece.positions_mm.clear();
+      for (const Vec2& by : *beam.instance_offsets) piece.positions_mm.push_back(first + by);
+    }
+  }
   beams_.push_back(std::move(piece));
   if (!beam.instance_offsets || is_infinite_) {
     cells_[place].push_back(number);
@@ -205,6 +216,7 @@ FarFieldCollector::CollectedBeam FarFieldCollector::moved_to_first_copy(const Re
   const Vec3 moved(by.x(), by.y(), 0.0);
   const Eigen::Affine2d exit_from_home = home_from_exit.inverse();
   const Vec2 exit_of_home = exit_from_home.translation();
+  piece.entry_from_exit = Eigen::Translation2d(-by) * beam.entry_from_exit * exit_from_home;
   for (const TexturedHit& hit : beam.hits) {
     FieldHit at_home;
     at_home.normal = hit.plane.normal;
@@ -321,8 +333,10 @@ CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, con
   if (!pieces.empty()) {
     group.replicate = pieces.front().replicate;
     group.copies = pieces.front().copies;
+    for (const Vec2& position : pieces.front().positions_mm) group.positions_mm.push_back(position + middle_mm);
   }
   const double first_path = pieces.empty() ? 0.0 : path(pieces.front());
+  group.path_mm = first_path + to_source_.head<2>().dot(middle_mm);
   for (const CollectedBeam& piece : pieces) {
     geometry::Polygon outline;
     for (const Vec2& p : piece.outline_mm) outline.push_back(p - middle_mm);
@@ -339,6 +353,9 @@ CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, con
       polygon.phase_variance += hit.phase.variance();
     }
     polygon.mean_factor = std::exp(-0.5 * polygon.phase_variance);
+    polygon.path_mm = path(piece) - first_path;
+    polygon.entry_mm = piece.entry_from_exit * middle_mm - middle_mm;
+    polygon.entry_slope = piece.entry_from_exit.linear();
     group.polygons.push_back(std::move(polygon));
   }
   return group;
@@ -348,7 +365,7 @@ CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, con
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
-  // Groups of each distinct cell, and the numbers of their copies that have the power of one cell.
+  // For each distinct cell: its groups, and the number of copies of each group that has the power of one cell.
   std::map<BeamsOfCell, std::vector<std::pair<std::size_t, double>>> known_cells;
   // All copies of a cell use the centroid of the first copy as the origin, so that equal fields have equal keys.
   std::optional<std::uint64_t> cell;
@@ -365,6 +382,11 @@ std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
     }
     for (CoherentGroup& group : groups_of(pieces, is_alone ? centroid_of(pieces) : middle)) {
       if (group.polygons.empty()) continue;
+      if (cells_interfere_) {
+        // The positions and optical paths of cells matter, so that equal fields of different cells are not combined.
+        groups.push_back(std::move(group));
+        continue;
+      }
       const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
       if (is_new) {
         same->second.emplace_back(it->second, 1.0);
@@ -436,6 +458,11 @@ FarField FarFieldCollector::finish() {
   };
   field_.field_ = fields_of(field_.groups_);
   field_.plane_field_ = fields_of(field_.plane_groups_);
+  if (cells_interfere_)
+    field_.lattice_ = std::make_shared<const LatticeField>(
+        LatticeField::Setting{period_mm_.asDiagonal(), to_source_.head<2>(), field_.wavelength_mm_, field_.coherency_,
+                              policy_.coherence_length_mm, *policy_.interference},
+        field_.groups_);
   return std::move(field_);
 }
 

@@ -25,13 +25,38 @@ struct Complex {
   V re, im;
 };
 
-/// Returns exp(i phase) for phases below 1e9. Whole periods are subtracted first, with 2 pi as the sum of two numbers,
-/// because Highway's sine is accurate only up to 39,000.
+/// Returns exp(i phase) for phases below 1e9. Multiples of pi / 2 are subtracted first, with pi / 2 as the sum of two
+/// numbers. The remaining phase is at most pi / 4. Its sine and cosine are computed by the polynomials of FDLIBM (Sun
+/// Microsystems 1993, k_sin.c and k_cos.c), whose errors are below 2^-58. A single reduction for both functions takes
+/// about half of the time of hn::Sin and hn::Cos.
 HWY_INLINE Complex unit(V phase) {
-  const V turns = hn::Round(hn::Mul(phase, splat(0.15915494309189535)));
+  const V quarters = hn::Round(hn::Mul(phase, splat(0.6366197723675814)));
   const V left =
-      hn::NegMulAdd(turns, splat(2.4492935982947064e-16), hn::NegMulAdd(turns, splat(6.283185307179586), phase));
-  return {hn::Cos(D(), left), hn::Sin(D(), left)};
+      hn::NegMulAdd(quarters, splat(6.123233995736766e-17), hn::NegMulAdd(quarters, splat(1.5707963267948966), phase));
+  const V square = hn::Mul(left, left);
+  const auto polynomial = [&](const std::array<double, 6>& coefficients) {
+    V sum = splat(coefficients.back());
+    for (std::size_t k = coefficients.size() - 1; k > 0; --k) sum = hn::MulAdd(sum, square, splat(coefficients[k - 1]));
+    return sum;
+  };
+  const V sine =
+      hn::MulAdd(hn::Mul(square, left),
+                 polynomial({-1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+                             2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10}),
+                 left);
+  const V cosine =
+      hn::MulAdd(hn::Mul(square, square),
+                 polynomial({4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+                             -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11}),
+                 hn::NegMulAdd(splat(0.5), square, splat(1.0)));
+  // Number of quarters modulo 4: odd numbers exchange sine and cosine.
+  const V quadrant = hn::NegMulAdd(splat(4.0), hn::Floor(hn::Mul(quarters, splat(0.25))), quarters);
+  const auto is_odd = hn::Or(hn::Eq(quadrant, splat(1.0)), hn::Eq(quadrant, splat(3.0)));
+  const V re = hn::IfThenElse(is_odd, sine, cosine);
+  const V im = hn::IfThenElse(is_odd, cosine, sine);
+  const auto is_negative_re = hn::Or(hn::Eq(quadrant, splat(1.0)), hn::Eq(quadrant, splat(2.0)));
+  const auto is_negative_im = hn::Ge(quadrant, splat(2.0));
+  return {hn::IfThenElse(is_negative_re, hn::Neg(re), re), hn::IfThenElse(is_negative_im, hn::Neg(im), im)};
 }
 
 /// Returns the mean of exp(-i x) over phases x between those of two corners, in the same way as mean_along() of

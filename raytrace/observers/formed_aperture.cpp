@@ -191,7 +191,10 @@ class Cutter {
                        0.0,
                        {},
                        whole.phase_variance,
-                       whole.mean_factor};
+                       whole.mean_factor,
+                       whole.path_mm,
+                       whole.entry_mm,
+                       whole.entry_slope};
     piece.power = whole.power * piece.transform.area_mm2() / whole.transform.area_mm2();
     add(std::move(piece));
   }
@@ -214,7 +217,7 @@ class Cutter {
 }  // namespace
 
 CoherentGroup formed(const CoherentGroup& group, const FormedPolicy& policy) {
-  CoherentGroup made{{}, group.copies, group.extent_mm, group.replicate};
+  CoherentGroup made{{}, group.copies, group.extent_mm, group.replicate, group.positions_mm, group.path_mm};
   Cutter cutter(made, policy);
   for (const FieldPolygon& polygon : group.polygons) cutter.cut(polygon);
   return made;

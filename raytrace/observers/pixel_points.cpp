@@ -15,9 +15,9 @@ constexpr double kAdditionalPoints = 1.7;
 // of a picture is the sum of the standard errors s / sqrt(N) of its pixels. For a given total number of points, the
 // noise is minimal for e = 2/3.
 constexpr double kExponent = 2.0 / 3.0;
-// Ratio of the maximum to the minimum number of points of a pixel.
+// Maximum number of points of a pixel, divided by the minimum number.
 constexpr double kMaxRatio = 64.0;
-// Minimum factor by which the variance must decrease. Otherwise, all pixels have the same number of points.
+// If additional points reduce the variance by less than this factor, all pixels have the same number of points.
 constexpr double kMinGain = 2.0;
 
 /// Returns the standard deviation of a single sample for each pixel. The variance is averaged over the neighbouring

@@ -1,6 +1,6 @@
 #pragma once
 
-// Number of paths that a camera traces through each pixel.
+// Number of paths that a camera traces through each pixel in one pass.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +19,9 @@ struct PixelMoments {
   }
 };
 
-/// Numbers of points per pixel and pass. In many pictures, most pixels are dark or uniform, and only a few of them are
-/// noisy. The noisy pixels then receive more points. The formula is derived in docs/theory/images.md.
+/// Number of points of each pixel in one pass. A point is the start of a path. In many pictures, most pixels are dark
+/// or uniform, and only a few pixels are noisy. Noisy pixels have more points. docs/theory/images.md derives the
+/// formula.
 class PixelPoints {
  public:
   /// Assigns the same number of points to every pixel.
@@ -36,7 +37,7 @@ class PixelPoints {
               std::uint32_t min_points);
 
   std::uint32_t operator[](std::size_t pixel) const { return points_[pixel]; }
-  /// Returns the sum of the numbers of points over all pixels.
+  /// Returns the number of points, summed over all pixels.
   std::uint64_t total() const { return total_; }
 
  private:

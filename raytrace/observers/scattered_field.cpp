@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "raytrace/exact/flat_polygon.h"
 
@@ -42,6 +44,12 @@ constexpr double kFolded = 0.1;
 constexpr double kDipWidth = 2.0 / pi;
 // Minimum common area as a fraction of the polygon's area. Smaller areas are neglected.
 constexpr double kMinCommonFraction = 1e-6;
+// Correlations below this value are neglected.
+constexpr double kMinCorrelation = 1e-12;
+// Phases that vary by less than this value over a polygon are treated as constant.
+constexpr double kSamePhase = 1e-6;
+// Distance between the points at which the slopes of a form are compared, as a fraction of the polygon's size.
+constexpr double kSlopeStep = 0.3;
 
 Amplitude phasor(double phase) {
   return {std::cos(phase), std::sin(phase)};
@@ -74,6 +82,78 @@ double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
   }
   return sum;
 }
+
+/// Common areas of two polygons, one of which is displaced. The polygons and the map between their points are those of
+/// ScatteredField::Shared.
+class DisplacedOverlap {
+ public:
+  DisplacedOverlap(const PolygonTransform& here, const PolygonTransform& there, const Eigen::Matrix2d& partner_map,
+                   const Vec2& shift_mm)
+      : merge_mm_(kMergedCorners * here.size_mm()), back_(partner_map.inverse()), here_(flat_outline(here.polygon())) {
+    for (const Vec2& r : there.polygon()) partners_.push_back(back_ * (r - shift_mm));
+    if (partner_map.determinant() < 0.0) std::reverse(partners_.begin(), partners_.end());
+    const auto add_edges = [this](const FlatPolygon& of, const FlatPolygon& other, double sign) {
+      for (std::size_t k = 0; k < of.size(); ++k) {
+        const HalfPlane half = left_of(of[k], of[(k + 1) % of.size()]);
+        double least = half.excess(other.front());
+        for (const Vec2& p : other) least = std::min(least, half.excess(p));
+        separators_.push_back({sign * half.a, sign * half.b, least});
+      }
+    };
+    add_edges(here_, partners_, 1.0);
+    add_edges(partners_, here_, -1.0);
+  }
+
+  /// Returns true if common_places() is empty. Two convex polygons have no common points if and only if the line
+  /// through an edge of one of them separates them.
+  bool is_empty(const Vec2& distance_mm) const {
+    const Vec2 move = back_ * distance_mm;
+    return std::any_of(separators_.begin(), separators_.end(),
+                       [&](const HalfPlane& s) { return s.a * move.x() + s.b * move.y() <= s.c; });
+  }
+  /// Returns the points of `here` whose partners, displaced by `distance_mm`, are in `there`.
+  FlatPolygon common_places(const Vec2& distance_mm) const {
+    const Vec2 move = back_ * distance_mm;
+    FlatPolygon partners = partners_;
+    for (Vec2& p : partners) p -= move;
+    return intersection(here_, partners, merge_mm_);
+  }
+
+ private:
+  double merge_mm_;
+  Eigen::Matrix2d back_;
+  FlatPolygon here_;
+  FlatPolygon partners_;  ///< points of `here` whose partners are the corners of `there`
+  /// One for each edge of both polygons. The edge separates the polygons if a x + b y <= c for the displacement (x, y)
+  /// of the partners.
+  std::vector<HalfPlane> separators_;
+};
+
+/// Deflection of the light of a polygon by forms, such as the curvature of the entrance surface. The direction cosines
+/// of light that leaves at r are those of the polygon plus cosines + per_mm r. This is the linear approximation at the
+/// centroid of the polygon.
+struct FormDeflection {
+  Vec2 cosines = Vec2::Zero();
+  Eigen::Matrix2d per_mm = Eigen::Matrix2d::Zero();
+
+  explicit FormDeflection(const FieldPolygon& polygon) {
+    const Vec2& centre = polygon.transform.centroid_mm();
+    const double step_mm = kSlopeStep * polygon.transform.size_mm();
+    const auto at = [&](const Vec2& r) {
+      Vec2 sum = Vec2::Zero();
+      for (const FieldHit& hit : polygon.hits)
+        if (hit.path_per_height != 0.0)
+          sum += hit.path_per_height * hit.form_slope.transpose() *
+                 hit.form->slope(hit.form_constant_mm + hit.form_slope * r);
+      return sum;
+    };
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      const Vec2 step = step_mm * Vec2::Unit(axis);
+      per_mm.col(axis) = (at(centre + step) - at(centre - step)) / (2.0 * step_mm);
+    }
+    cosines = at(centre) - per_mm * centre;
+  }
+};
 
 }  // namespace
 
@@ -142,17 +222,9 @@ struct ScatteredField::Shared {
   }
   /// Returns the mean product of both phase factors over all heights, minus the product of their means.
   double correlation(const Vec2& distance_mm) const {
-    return std::exp(covariance(pairs, distance_mm) + log_means) - std::exp(log_means);
+    return std::exp(log_means) * std::expm1(covariance(pairs, distance_mm));
   }
-  /// Returns the points of `here` whose partners, displaced by `distance_mm`, are in `there`.
-  FlatPolygon common_places(const Vec2& distance_mm) const {
-    const double merge_mm = kMergedCorners * here->transform.size_mm();
-    FlatPolygon partners;
-    const Eigen::Matrix2d back = partner_map.inverse();
-    for (const Vec2& r : there->transform.polygon()) partners.push_back(back * (r - shift_mm - distance_mm));
-    if (partner_map.determinant() < 0.0) std::reverse(partners.begin(), partners.end());
-    return intersection(flat_outline(here->transform.polygon()), partners, merge_mm);
-  }
+  DisplacedOverlap overlap() const { return {here->transform, there->transform, partner_map, shift_mm}; }
 
   /// Returns all maps between points of `here` and `there` that result from facets which both paths have met.
   static std::vector<Shared> of(const FieldPolygon& here, const FieldPolygon& there, double shortest_mm) {
@@ -255,42 +327,38 @@ void ScatteredField::add(const CoherentGroup& group, bool with_fringes) {
 }
 
 void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, double copies) {
-  const PolygonTransform& here = shared.here->transform;
-  const PolygonTransform& there = shared.there->transform;
   const bool is_one = shared.here == shared.there;
-  const double gap_mm =
-      is_one ? 0.0 : (here.centroid_mm() - there.centroid_mm()).norm() - here.size_mm() - there.size_mm();
+  const DisplacedOverlap overlap = shared.overlap();
+  const FormDeflection deflection(*shared.there);
   const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
                           std::pow(wave_number_ / (2.0 * pi), 2.0);
   const Vec2 phase_gradient = wave_number_ * (shared.there->cosines - shared.here->cosines);
-  const bool is_parallel = phase_gradient.norm() * here.size_mm() < 1e-6;
+  const Vec2 cosines = shared.there->cosines + deflection.cosines;
+  const double size_mm = shared.here->transform.size_mm();
+  // Distances in the opposite direction contribute as well. For a single polygon, their contribution is the complex
+  // conjugate. For a pair, it is the conjugate of the pair with exchanged order, and both directions are computed.
+  const std::vector<double> signs = is_one ? std::vector{1.0} : std::vector{1.0, -1.0};
   std::size_t at = 0;
   for (const Ring& ring : rings_) {
-    if (ring.radius_mm < gap_mm) {
-      at += ring.angles;
-      continue;
-    }
     const double step = pi / static_cast<double>(ring.angles) * ring.weight_mm * ring.radius_mm;
     for (std::size_t k = 0; k < ring.angles; ++k, ++at) {
-      // Distances in the opposite direction contribute as well. For a single polygon, their contribution is the complex
-      // conjugate. For a pair, it is the conjugate of the pair with exchanged order, and both directions are computed.
       Amplitude sum = 0.0;
-      for (const double sign : {1.0, -1.0}) {
+      std::optional<double> correlation;  // equal for both directions
+      for (const double sign : signs) {
         const Vec2 distance = sign * distances_[at].mm;
-        const double correlation = shared.correlation(distance);
-        if (std::abs(correlation) < 1e-12) continue;
-        const FlatPolygon common = shared.common_places(distance);
+        if (overlap.is_empty(distance)) continue;
+        if (!correlation) correlation = shared.correlation(distance);
+        if (std::abs(*correlation) < kMinCorrelation) break;
+        const FlatPolygon common = overlap.common_places(distance);
         if (common.size() < 3) continue;
+        const Vec2 kappa = phase_gradient + wave_number_ * (deflection.per_mm.transpose() * distance);
         Amplitude places = area(common);
-        if (!is_parallel) places = PolygonTransform({common.begin(), common.end()}).at(phase_gradient);
-        const Amplitude one =
-            field * correlation * phasor(-wave_number_ * shared.there->cosines.dot(distance)) * places;
-        if (is_one) {
-          sum = 2.0 * one;
-          break;
-        }
+        if (kappa.norm() * size_mm >= kSamePhase) places = PolygonTransform({common.begin(), common.end()}).at(kappa);
+        const Amplitude one = field * *correlation * phasor(-wave_number_ * cosines.dot(distance)) * places;
         sum += sign > 0.0 ? one : std::conj(one);
       }
+      if (is_one) sum *= 2.0;
+      if (sum == 0.0) continue;
       distances_[at].weight += step * sum;
       if (group.replicate) replicate_weights_(static_cast<Eigen::Index>(at), *group.replicate) += step * sum;
     }
@@ -298,7 +366,8 @@ void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, 
 }
 
 void ScatteredField::add_fringes(const Shared& shared, double copies) {
-  const FlatPolygon common = shared.common_places(Vec2::Zero());
+  const DisplacedOverlap overlap = shared.overlap();
+  const FlatPolygon common = overlap.common_places(Vec2::Zero());
   const double common_mm2 = common.size() < 3 ? 0.0 : area(common);
   if (!(common_mm2 > kMinCommonFraction * shared.here->transform.area_mm2())) return;
   const Moves moves(shared);
@@ -313,7 +382,7 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
       const double weight =
           2.0 * pi / static_cast<double>(ring.angles) * ring.weight_mm * ring.radius_mm * shared.correlation(distance);
       if (weight == 0.0) continue;
-      const FlatPolygon left = shared.common_places(distance);
+      const FlatPolygon left = overlap.common_places(distance);
       whole_mm2 += weight;
       strength_mm4 += weight * (left.size() < 3 ? 0.0 : area(left));
       moments += weight * distance * distance.transpose();

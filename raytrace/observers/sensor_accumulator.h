@@ -38,8 +38,8 @@ class SensorAccumulator : public ExitObserver, public CellObserver {
   /// \param from position in the camera frame
   void on_front_reflection(std::uint32_t owner, const Vec3& from, const Vec3& direction, double power);
   void on_transmission(std::uint32_t owner, double power) override;
-  /// Adds the luminance of the surroundings for light that is reflected by a shell or misses a shell. This light is not
-  /// traced further.
+  /// Adds the luminance of the surroundings for light that a shell reflects, or that leaves the part and misses a
+  /// shell. This light is not traced further.
   void on_shell_loss(std::uint32_t owner, double power);
 
  private:

@@ -81,7 +81,7 @@ class Follower {
     return true;
   }
 
-  /// Ends the path at the chamfer of the face or, if the light passes the chamfer, at the edge of the mount.
+  /// Ends the path at the chamfer or, if the light does not meet the chamfer, at the plane of the mount's edge.
   void stop(const Vec3& direction) {
     if (setup_.stops.is_clear(position_.head<2>()))
       position_ += (setup_.stops.top_mm() - position_.z()) / direction.z() * direction;
@@ -90,7 +90,7 @@ class Follower {
     is_done_ = true;
   }
 
-  /// Ends the path of light that is stopped before it reaches the face.
+  /// Ends the path of incident light that the mount or the chamfer blocks.
   LightPath stop_before_face() {
     stop(setup_.to_source);
     return std::move(path_);

@@ -24,7 +24,7 @@ enum class PathEvent {
   enters_again,      ///< through a facet from the air behind the part
   leaves_side,       ///< through a side of the plate; the path ends
   escapes,           ///< from the air behind the part; the path ends
-  stopped,           ///< by the mount or by the chamfer of the entrance face; the path ends
+  stopped,           ///< blocked by the mount or by the chamfer of the entrance face; the path ends
   ends               ///< absorbed or not traced further
 };
 

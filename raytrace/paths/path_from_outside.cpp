@@ -134,7 +134,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
   return is_shadowed_ ? stop_at_mount(state) : arrive_at_entrance(state);
 }
 
-/// Ends the path of light that the mount stops on its way to the entrance face. Returns true.
+/// Ends the path of light that the mount blocks on its way to the entrance face. Always returns true.
 bool PathWalker::stop_at_mount(State& state) {
   arrival_ = Arrival::entrance;
   finish(state, Account::stopped);

@@ -190,9 +190,9 @@ std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const
       {state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
-/// Finds the next face inside a finite part: the entrance face, the back surface or a side, whichever is nearest. The
-/// back surface is tested first, then a curved entrance face, and the sides last. Most paths then need no later test,
-/// because they have already met a nearer face.
+/// Finds the nearest face on a path inside a finite part: the entrance face, the back surface or a side. The back
+/// surface is tested first, then a curved entrance face, and the sides last. Most paths then meet a nearer face before
+/// the later tests, so that these tests can be skipped.
 PathWalker::Step PathWalker::step_inside(State& state) const {
   Step step;
   double limit = kInfinity;
@@ -239,14 +239,15 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
   return step;
 }
 
-/// Returns the distance to the first side of a finite part, or `limit` if this distance is larger than `limit`.
+/// Finds the nearest side of a finite part within the distance `limit`. Returns the distance to this side, or `limit`
+/// if there is none.
 double PathWalker::reach_side(const State& state, double limit, Step& step) const {
   for (std::size_t k = 0; k < setup_.sides.size(); ++k) {
     const double towards = setup_.sides[k].normal.dot(state.direction);
     if (towards <= 0.0) continue;
-    const double t = (setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position)) / towards;
-    if (t >= limit) continue;
-    limit = std::max(t, 0.0);
+    const double gap_mm = setup_.sides[k].offset_mm - setup_.sides[k].normal.dot(state.position);
+    if (gap_mm >= limit * towards) continue;
+    limit = std::max(gap_mm / towards, 0.0);
     step.end = End::side;
     step.side = k;
   }
@@ -401,7 +402,8 @@ bool PathWalker::meet_entrance(State& state) {
   return branch != Branch::transmitted;
 }
 
-/// Traces light from the entrance face past the mount and through all shells, and records it if it passes them.
+/// Traces light from the entrance face past the mount and through all shells. Records the light that neither mount nor
+/// shells block.
 /// \param record member function that records the light
 void PathWalker::record_outside(Record record, const State& state, const Light& light, const Vec3& direction) {
   if (!setup_.stops.passes_mount(state.position, direction)) {

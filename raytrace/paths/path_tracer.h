@@ -36,7 +36,7 @@ struct PathSetup : LightSetup {
   Vec2 centre_mm = Vec2::Zero();  ///< origin of positions, in the part frame
   double clearance_mm = 0.0;      ///< maximum z at which rays are tested against the back surface
   Vec2 period_mm = Vec2::Zero();  ///< period of an infinite part
-  /// Half size of a rectangle around the origin. The rectangle is inside all sides of a finite part.
+  /// Half size of a rectangle around the origin that is inside all sides of a finite part.
   Vec2 inner_half_mm = Vec2::Zero();
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
   /// Convex polygons of the entrance face of a part with notches or holes, see Part::entrance_pieces.
@@ -47,8 +47,8 @@ struct PathSetup : LightSetup {
   double below_surface_mm() const {
     return -depth_mm - (entrance_pieces.empty() ? clearance_mm : clearance_mm - top_mm);
   }
-  /// Returns true if a position is inside `inner_half_mm`, and therefore inside all sides of a finite part. A line
-  /// between two such positions does not meet a side.
+  /// Returns true if a position is inside the rectangle of `inner_half_mm`. A line between two such positions cannot
+  /// meet a side.
   bool is_far_from_sides(const Vec3& position_mm) const {
     return std::abs(position_mm.x()) < inner_half_mm.x() && std::abs(position_mm.y()) < inner_half_mm.y();
   }
@@ -90,8 +90,8 @@ class PathWalker {
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
-  /// Surface at which the light of launch() first meets the part. `inside` means that the light starts in the part.
-  /// `none` means that the light meets only shells.
+  /// Surface at which the light of launch() first meets the part. If the light starts inside the part, it is `inside`.
+  /// If the light meets only shells, it is `none`.
   enum class Arrival { none, entrance, side, back, inside };
   /// Returns the place where the light of the last call of launch() has met the part.
   /// \pre this call has returned true
@@ -196,8 +196,9 @@ class PathWalker {
   ExitObserver* observer_;
   std::vector<State> pending_;
   EntranceScatter scatter_;
-  Vec3 to_source_ = Vec3::UnitZ();         ///< direction opposite to the light that is traced
-  bool is_shadowed_ = false;               ///< true if the mount stops the light of launch() on its way to the face
+  Vec3 to_source_ = Vec3::UnitZ();  ///< direction opposite to the light that is traced
+  /// true if the mount blocks the light of launch() on its way to the entrance face
+  bool is_shadowed_ = false;
   bool splits_at_first_interface_ = true;  ///< true if both branches of the first interface are traced at any power
   Arrival arrival_ = Arrival::entrance;
   RandomKey key_;

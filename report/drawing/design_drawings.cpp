@@ -10,8 +10,10 @@
 #include "design/entrance_of_design.h"
 #include "design/io/design_json.h"
 #include "design/part_of_design.h"
+#include "geometry/outline/convex_decomposition.h"
 #include "report/drawing/design_picture.h"
 #include "report/drawing/design_sheets.h"
+#include "report/map_plot.h"
 #include "report/plot.h"
 
 namespace retrace::report {
@@ -85,6 +87,26 @@ std::string shells_svg(const design::Design& design, const studies::ShellSection
   return render_svg(plot);
 }
 
+/// Returns a map of the angles between the axes of the elements and the normal of the entrance face.
+std::string pin_axes_svg(const studies::ToolReport& tool) {
+  MapPlot plot;
+  plot.title = "Axes of the elements and normal of the entrance surface";
+  plot.axis_unit = "mm";
+  plot.value_label = "angle (degrees)";
+  plot.hatched_label = "no whole element";
+  MapPanel& panel = plot.panels.emplace_back();
+  std::vector<geometry::Vec2> corners;
+  double largest_deg = 0.0;
+  for (const studies::PinAxis& pin : tool.pin_axes) {
+    panel.regions.push_back({pin.outline_mm, pin.angle_deg()});
+    largest_deg = std::max(largest_deg, pin.angle_deg());
+    corners.insert(corners.end(), pin.outline_mm.begin(), pin.outline_mm.end());
+  }
+  panel.outline = geometry::convex_hull(std::move(corners));
+  plot.full_value = std::max(largest_deg, 1e-3);
+  return render_svg(plot);
+}
+
 /// Returns the drawings of the part itself.
 DesignDrawings part_drawings(const studies::Inspection& inspection) {
   const design::Design& design = inspection.design;
@@ -115,6 +137,7 @@ DesignDrawings part_drawings(const studies::Inspection& inspection) {
 DesignDrawings design_drawings(const studies::Inspection& inspection) {
   DesignDrawings drawings = part_drawings(inspection);
   if (inspection.shells) drawings.shells = shells_svg(inspection.design, inspection.shells->section);
+  if (inspection.tool && !inspection.tool->pin_axes.empty()) drawings.pin_axes = pin_axes_svg(*inspection.tool);
   return drawings;
 }
 

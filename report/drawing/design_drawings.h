@@ -16,6 +16,7 @@ struct DesignDrawings {
   std::string view = {};      ///< PNG
   std::string entrance = {};  ///< SVG: profile of a curved entrance face
   std::string shells = {};    ///< SVG: section through the shells in front of the part
+  std::string pin_axes = {};  ///< SVG: angles between the elements' axes and a curved entrance face
   Warnings warnings = {};
 };
 

@@ -7,6 +7,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/message_text.h"
+#include "core/text.h"
 #include "report/page/former_names.h"
 
 namespace retrace::report {
@@ -71,7 +72,7 @@ std::string media_type_of(const std::string& ending) {
 }  // namespace
 
 void add_result(ResultFolder& result, const std::string& name, const std::string& text) {
-  const std::string ending = fs::path(name).extension().string();
+  const std::string ending = ending_of(name);
   if (ending == ".json") add_document(result, name, name, text);
   if (const std::string type = media_type_of(ending); !type.empty()) result.pictures.push_back({name, type, text});
 }
@@ -103,7 +104,7 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
   const std::vector<fs::path> files = files_in(folder);
   const std::set<fs::path> known(files.begin(), files.end());
   for (const fs::path& file : files) {
-    const std::string ending = file.extension().string();
+    const std::string ending = ending_of(file);
     const std::string name = printable(file.lexically_relative(folder).generic_string(), 200);
     const std::string type = media_type_of(ending);
     if (ending != ".json" && type.empty()) continue;

@@ -47,7 +47,7 @@ std::vector<std::string> pictures_of(const std::string& kind) {
   if (kind == "fabrication") return {"roughing", "finishing", "arrangement"};
   if (kind == "metrology") return {"metrology"};
   if (kind == "image") return {"irradiance", "angular", "camera", "false_colour", "road"};
-  if (kind == "inspect") return {"plan", "section", "view"};
+  if (kind == "inspect") return {"plan", "section", "view", "pin_axes"};
   return {};
 }
 
@@ -58,6 +58,7 @@ std::string caption_of(const std::string& picture) {
   if (picture == "finishing") return "Tool path through one element: finishing";
   if (picture == "arrangement") return "The elements in the order in which they are cut";
   if (picture == "plan") return "Plan: the part seen from the light, lengths in mm";
+  if (picture == "pin_axes") return "Angles between the axes of the elements and the normal of the entrance surface";
   if (picture == "section") return "Section across the elements, lengths in mm";
   if (picture == "view") return "The part seen from behind";
   if (picture == "irradiance")

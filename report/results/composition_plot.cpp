@@ -1,15 +1,15 @@
-#include <filesystem>
 
 #include "report/results/result_plots.h"
 #include "studies/compose/compose.h"
 #include "studies/compose/goals.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::report {
 
 MixturePlot composition_plot(const studies::Study& study, const studies::ComposeRequest& request,
                              const studies::Composition& composition) {
   MixturePlot plot;
-  plot.title = study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title;
+  plot.title = studies::shown_title(study);
   if (!composition.best) return plot;
   const studies::PartOfZones& part = *composition.best;
   for (const studies::Zone& zone : part.zones)

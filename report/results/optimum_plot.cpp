@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,32 +8,30 @@
 #include "report/results/result_plots.h"
 #include "studies/optimise/important_parameters.h"
 #include "studies/optimise/optimise.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::report {
 namespace {
 
 using studies::Variant;
 
-// Values of Series::look for feasible, excluded and chosen designs.
+// Values of Series::look for designs that satisfy all constraints, for designs that violate a constraint, and for the
+// best design.
 constexpr std::size_t kFeasibleLook = 0, kExcludedLook = 6, kChosenLook = 1;
-
-std::string title_of_study(const studies::Study& study) {
-  return study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title;
-}
 
 double number_of(const Variant& variant, std::size_t parameter) {
   return std::get<double>(variant.values[parameter].shown);
 }
 
-/// Returns a name and a factor for the plot of the objective. If the objective is a single quantity, the objective
-/// times the factor is this quantity.
+/// Returns the name of the plotted objective, and the factor by which the objective is multiplied. If the objective
+/// consists of one quantity, the factor converts it to this quantity.
 std::pair<std::string, double> shown_objective(const studies::OptimiseRequest& request) {
   const auto& weights = request.objective.weights;
   if (weights.size() != 1) return {"objective", 1.0};
   return {weights.front().first, 1.0 / weights.front().second};
 }
 
-/// Returns all designs with an objective, in ascending order of a parameter.
+/// Returns all designs with an objective, ordered by the value of a parameter.
 std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std::size_t parameter) {
   std::vector<const Variant*> designs;
   for (const Variant& variant : optimum.designs)
@@ -44,7 +41,7 @@ std::vector<const Variant*> sorted_designs(const studies::Optimum& optimum, std:
   return designs;
 }
 
-/// Returns the ranges of a parameter in which the evaluated designs are feasible. A range ends halfway between a
+/// Returns the ranges of a parameter in which all evaluated designs are feasible. Each range ends halfway between a
 /// feasible and an infeasible design.
 std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, std::size_t parameter) {
   std::vector<Range> ranges;
@@ -62,12 +59,12 @@ std::vector<Range> feasible_ranges(const std::vector<const Variant*>& designs, s
   return ranges;
 }
 
-/// Returns a plot whose axes are the two most important parameters. Colours show the objective.
+/// Returns a plot with the two most important parameters as axes. The colours of the points show the objective.
 LinePlot plane_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                     const studies::Optimum& optimum, std::size_t x, std::size_t y) {
   const auto [name, factor] = shown_objective(request);
   LinePlot plot;
-  plot.title = title_of_study(study) + ": evaluated designs";
+  plot.title = studies::shown_title(study) + ": evaluated designs";
   plot.x_label = study.parameters[x].name;
   plot.y_label = study.parameters[y].name;
   plot.scale_label = name;
@@ -94,7 +91,7 @@ LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseReques
   if (axes.size() > 1) return plane_plot(study, request, optimum, axes[0], axes[1]);
   const auto [name, factor] = shown_objective(request);
   LinePlot plot;
-  plot.title = title_of_study(study) + ": objective";
+  plot.title = studies::shown_title(study) + ": objective";
   plot.y_label = name;
   if (axes.empty()) return plot;
   const std::size_t x = axes.front();
@@ -125,7 +122,7 @@ LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseReques
 LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                           const studies::Optimum& optimum) {
   LinePlot plot;
-  plot.title = title_of_study(study) + ": constrained quantities";
+  plot.title = studies::shown_title(study) + ": constrained quantities";
   plot.y_label = "quantity / limit";
   const std::vector<std::size_t> axes = studies::important_parameters(study, optimum);
   if (axes.empty()) return plot;
@@ -134,12 +131,10 @@ LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRe
   const std::vector<const Variant*> designs = sorted_designs(optimum, x);
   plot.shaded_x = feasible_ranges(designs, x);
   for (const studies::Constraint& constraint : request.constraints) {
-    const auto found = std::ranges::find_if(
-        study.quantities, [&](const auto& quantity) { return quantity->name() == constraint.quantity; });
-    const auto k = static_cast<std::size_t>(found - study.quantities.begin());
+    const std::size_t k = studies::quantity_index(study, constraint.quantity).value();
     const double limit = constraint.max ? *constraint.max : *constraint.min;
     Series series{constraint.text(), {}, {}, {}};
-    // A quantity with the limit 0 is drawn as 1 + quantity. Its limit is then also at 1.
+    // A quantity cannot be divided by the limit 0. In this case, 1 + quantity is drawn, so that the limit is also at 1.
     const double scale = limit != 0.0 ? 1.0 / limit : 1.0;
     const double shift = limit != 0.0 ? 0.0 : 1.0;
     for (const Variant* const design : designs) {

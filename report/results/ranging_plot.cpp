@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/angle.h"
 #include "core/number_format.h"
@@ -21,10 +22,12 @@ std::string ranging_title(const RangingResult& result) {
                      shortest(p.index.wavelength_nm), shortest(p.incidence_deg), shortest(p.azimuth_deg));
 }
 
-/// Returns a panel with one component of the map. The order of the rows is reversed, because pictures begin with the
-/// top row and maps with the bottom row.
+/// Returns a panel with one component of the map. Pictures begin with the top row and maps with the bottom row, so the
+/// order of the rows is reversed.
 template <class Component>
-ImagePanel ranging_panel(const RangingMap& map, const char* title, double full_value, const Component& component) {
+ImagePanel ranging_panel(const RangingResult& result, const char* title, double full_value,
+                         const Component& component) {
+  const RangingMap& map = result.map;
   ImagePanel panel;
   panel.title = title;
   panel.value_label = "cross section (10⁶ m²)";
@@ -35,6 +38,9 @@ ImagePanel ranging_panel(const RangingMap& map, const char* title, double full_v
   for (std::size_t row = map.points; row-- > 0;)
     for (std::size_t column = 0; column < map.points; ++column)
       panel.values.push_back(std::max(0.0, component(map.values[row * map.points + column])) / kMillionM2);
+  const std::optional<studies::Annulus>& annulus = result.settings.annulus;
+  if (annulus && annulus->outer_rad < map.half_width_rad)
+    panel.circles = {annulus->inner_rad * kArcsecPerRad, annulus->outer_rad * kArcsecPerRad};
   return panel;
 }
 
@@ -45,14 +51,15 @@ ImagePlot ranging_map_plot(const RangingResult& result) {
   const RangingMap& map = result.map;
   plot.title = ranging_title(result);
   plot.remarks.push_back("around the direction back to the source, as seen from the source");
+  if (result.settings.annulus) plot.remarks.push_back("dashed: annulus of velocity aberration");
   double full_value = 0.0;
   for (const auto& value : map.values) full_value = std::max(full_value, value.total / kMillionM2);
-  plot.panels.push_back(ranging_panel(map, "Total", full_value, [](const auto& v) { return v.total; }));
+  plot.panels.push_back(ranging_panel(result, "Total", full_value, [](const auto& v) { return v.total; }));
   if (!map.values.front().parallel) return plot;
   plot.panels.push_back(
-      ranging_panel(map, "Polarisation as sent", full_value, [](const auto& v) { return *v.parallel; }));
+      ranging_panel(result, "Polarisation as sent", full_value, [](const auto& v) { return *v.parallel; }));
   plot.panels.push_back(
-      ranging_panel(map, "Orthogonal polarisation", full_value, [](const auto& v) { return *v.crossed; }));
+      ranging_panel(result, "Orthogonal polarisation", full_value, [](const auto& v) { return *v.crossed; }));
   return plot;
 }
 
@@ -71,6 +78,8 @@ LinePlot ranging_rings_plot(const RangingResult& result) {
     max.add(angle, result.map.ring_m2[k].max / kMillionM2);
   }
   plot.series = {std::move(mean), std::move(min), std::move(max)};
+  if (const std::optional<studies::Annulus>& annulus = result.settings.annulus)
+    plot.shaded_x = {{annulus->inner_rad * kArcsecPerRad, annulus->outer_rad * kArcsecPerRad}};
   return plot;
 }
 

@@ -106,14 +106,14 @@ LinePlot observation_plot(const studies::PhotometryResult& result);
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
 
-/// Returns a plot of the objective of all evaluated designs with its errors, over the parameter that has the largest
-/// effect. The range in which designs satisfy all constraints is shaded, and the chosen design is marked. With several
-/// continuous parameters, the axes are the two most important parameters, and colours show the objective.
+/// Returns a plot of the objective and its error for all evaluated designs. The x axis is the most important parameter.
+/// The feasible range is shaded, and the best design is marked. With several continuous parameters, both axes are
+/// parameters, and colours show the objective.
 LinePlot optimum_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                       const studies::Optimum& optimum);
 
-/// Returns a plot of all constrained quantities, divided by their limits, over the same parameter as in optimum_plot().
-/// A line at 1 shows the limits.
+/// Returns a plot of all constrained quantities, each divided by its limit. The x axis is the parameter of
+/// optimum_plot(). A line at 1 shows the limits.
 /// \pre the request has a constraint
 LinePlot constraints_plot(const studies::Study& study, const studies::OptimiseRequest& request,
                           const studies::Optimum& optimum);
@@ -127,15 +127,15 @@ MixturePlot composition_plot(const studies::Study& study, const studies::Compose
 /// spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 
-/// Returns maps of the cross section over the far field of the first point. The first map shows all light. If the
-/// transmitted light is polarised, two more maps show both polarisations.
+/// Returns maps of the cross section over the far field of the first point. The first map shows all returned light. If
+/// the transmitted light is polarised, the next maps show its polarisation and the orthogonal polarisation.
 /// \pre the result has a map
 ImagePlot ranging_map_plot(const studies::RangingResult& result);
-/// Returns a plot of the cross section as a function of the angle from the direction to the source. The curves are the
-/// mean, the minimum and the maximum on rings.
+/// Returns a plot of the mean, the minimum and the maximum of the cross section on rings around the direction to the
+/// source. The x axis is the angle from this direction.
 /// \pre the result has a map
 LinePlot ranging_rings_plot(const studies::RangingResult& result);
-/// Returns a plot of the response of an array to a pulse.
+/// Returns a plot of the response of an array to a pulse, for the first point.
 /// \pre the first point has a response
 LinePlot ranging_response_plot(const studies::RangingResult& result);
 

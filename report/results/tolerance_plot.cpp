@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <filesystem>
 
 #include "report/results/result_plots.h"
+#include "studies/quantity/study_names.h"
 #include "studies/tolerance/tolerance.h"
 
 namespace retrace::report {
@@ -32,8 +32,7 @@ LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceReq
                         const studies::ToleranceResult& result) {
   const studies::QuantityTolerance& quantity = result.quantities.front();
   LinePlot plot;
-  plot.title = (study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title) +
-               ": distribution over manufactured parts";
+  plot.title = studies::shown_title(study) + ": distribution over manufactured parts";
   plot.x_label = quantity.quantity;
   plot.y_label = "Parts below (%)";
   plot.y_range = Range{0.0, kPercent};

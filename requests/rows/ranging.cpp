@@ -14,10 +14,10 @@ constexpr std::string_view kSentPolarisations[] = {"design", "unpolarised", "lin
 constexpr std::string_view kLinear[] = {"linear"};
 constexpr NumberRange kLaserWavelength{.low = 100.0, .high = 20000.0};
 constexpr NumberRange kArrayIncidence{.low = -180.0, .high = 180.0};
-/// Allowed angles from the direction to the source. The far field is a function of small angles.
+/// Allowed angles from the direction to the source. The far field is computed in the approximation of small angles.
 constexpr NumberRange kSmallArcsec{.low = 0.0, .high = 36000.0};
 constexpr NumberRange kSignedArcsec{.low = -36000.0, .high = 36000.0};
-/// Allowed heights of orbits. The highest is far beyond the distance of the Moon.
+/// Allowed heights of orbits. The upper limit is far above the orbit of the Moon.
 constexpr NumberRange kOrbitKm{.low = 0.0, .low_included = false, .high = 1e7};
 constexpr std::size_t kMaxRangingValues = 1000;
 
@@ -54,7 +54,7 @@ constexpr Row kRangingRows[] = {
      {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth"}},
     {"polarisation",
      Word{kSentPolarisations},
-     "polarisation of the light that is sent: that of the design, or unpolarised, linear, right or left (circular)",
+     "polarisation of the transmitted light: as in the design, or unpolarised, linear, right or left (circular)",
      access<&RangingRequest::polarisation>,
      {.value = "STATE"}},
     {"polarisation_deg",

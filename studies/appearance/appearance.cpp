@@ -41,6 +41,12 @@ void check_engine(const design::Design& design, PhotometrySettings request) {
     throw InputError(design.where(design.entrance_key()),
                      "a material returns light in the same way at every point, but the light that returns behind an "
                      "[entrance_surface] depends on the point: use retrace image --camera or photometry");
+  design::require_supported(design, {.what = "retrace material",
+                                     .balls = true,
+                                     .solids = true,
+                                     .shells = true,
+                                     .wet_backs = true,
+                                     .cell_spreads = false});
   request.engine = raytrace::Engine::automatic;
   const Photometer photometer(design, request, kIntervalsPerFunction);
   if (!photometer.is_exact())

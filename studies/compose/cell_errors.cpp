@@ -11,6 +11,7 @@
 #include "core/threads.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
@@ -23,6 +24,7 @@ std::vector<double> own_errors(const Study& study, const PointValues& values) {
   const Candidate candidate = make_candidate(study, values);
   if (!candidate.design().elements()) return {};
   const geometry::PartSpec& part = candidate.design().part();
+  if (std::holds_alternative<geometry::RuledCells>(part.element)) return {};
   const auto& errors = part.angle_errors.dihedral_error_arcmin;
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
   return {errors.begin(), is_prism ? errors.begin() + 1 : errors.end()};
@@ -43,9 +45,10 @@ Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) 
 /// \throw InputError if a goal has no value
 std::vector<double> goals_from(const Study& study, const ComposeRequest& request, const compute::StoredPoint& point) {
   std::vector<double> goals;
-  for (const std::string& goal : request.goals)
-    for (std::size_t k = 0; k < point.outputs.size(); ++k)
-      if (study.quantities[k]->name() == goal && point.outputs[k].value) goals.push_back(*point.outputs[k].value);
+  for (const std::string& goal : request.goals) {
+    const std::size_t k = quantity_index(study, goal).value();
+    if (k < point.outputs.size() && point.outputs[k].value) goals.push_back(*point.outputs[k].value);
+  }
   if (goals.size() != request.goals.size())
     throw InputError("a cell with angle errors cannot be computed: " +
                      (point.reason.empty() ? "the value of a goal cannot be computed" : point.reason));

@@ -11,6 +11,7 @@
 #include "studies/compose/composition_errors.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/optimise/refine.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -37,21 +38,30 @@ bool has_intervals(const Study& study) {
   return std::ranges::any_of(study.parameters, [](const Parameter& p) { return p.interval.has_value(); });
 }
 
-/// Returns the index of a quantity in the list of a study's quantities.
-std::size_t index_of(const Study& study, const std::string& quantity) {
-  const auto found = std::ranges::find_if(study.quantities, [&](const auto& each) { return each->name() == quantity; });
-  return static_cast<std::size_t>(found - study.quantities.begin());
+/// Numbers of steps into which the area may be divided if the study gives no step. The first ones are preferred.
+constexpr std::size_t kAreaSteps[] = {10, 20, 50, 100, 200, 500, 1000};
+
+/// Returns the standard error of the minimum goal of a mixture. Errors of different cells are independent.
+double error_of_merit(const std::vector<FamilyCell>& catalogue, const Mixture& mixture) {
+  const auto least = std::ranges::min_element(mixture.goals) - mixture.goals.begin();
+  double square = 0.0;
+  for (const ZoneFraction& zone : mixture.zones) {
+    const double error = zone.fraction * catalogue[zone.cell].goal_errors[static_cast<std::size_t>(least)];
+    square += error * error;
+  }
+  return std::sqrt(square);
 }
 
 /// Converts evaluated designs to cells of the family.
 class CellReader {
  public:
   CellReader(const Study& study, const ComposeRequest& request) {
-    for (const std::string& goal : request.goals) goals_.push_back(index_of(study, goal));
+    for (const std::string& goal : request.goals) goals_.push_back(quantity_index(study, goal).value());
     for (const Constraint& constraint : request.part_constraints)
-      means_.push_back(index_of(study, constraint.quantity));
-    if (request.front) means_.push_back(index_of(study, request.front->quantity));
-    for (const auto& [quantity, price] : request.price) prices_.emplace_back(index_of(study, quantity), price);
+      means_.push_back(quantity_index(study, constraint.quantity).value());
+    if (request.front) means_.push_back(quantity_index(study, request.front->quantity).value());
+    for (const auto& [quantity, price] : request.price)
+      prices_.emplace_back(quantity_index(study, quantity).value(), price);
   }
 
   /// Returns the cell for an evaluated design. Returns nothing if the design is infeasible or a quantity has no value.
@@ -64,6 +74,7 @@ class CellReader {
       return values.size() == of.size();
     };
     if (!take(goals_, cell.mixed.goals) || !take(means_, cell.mixed.means)) return std::nullopt;
+    for (const std::size_t k : goals_) cell.goal_errors.push_back(variant.outputs[k].std_error);
     for (const auto& [k, price] : prices_) {
       if (!variant.outputs[k].value) return std::nullopt;
       cell.mixed.cost += price * *variant.outputs[k].value;
@@ -77,8 +88,8 @@ class CellReader {
   std::vector<std::pair<std::size_t, double>> prices_;
 };
 
-/// Passes the progress of a search with dual prices to an observer. Best designs are not reported, because the
-/// objective of this search is not the objective of the part.
+/// Passes the progress of a search with dual prices to an observer. Best designs of this search are not reported,
+/// because its objective differs from the objective of the part.
 class PricingObserver final : public OptimiseObserver {
  public:
   explicit PricingObserver(OptimiseObserver* observer) : observer_(observer) {}
@@ -120,7 +131,7 @@ class Composer {
     if (request_.errors) composition.errors = effects_of_errors(study_, request_, composition, observer_, cancel_);
   }
 
-  /// Chooses the best part that consists of cells in the store.
+  /// Chooses the best part from the cells in the store.
   void choose_from_store(Composition& composition) {
     family_.add_stored();
     read_catalogue(composition);
@@ -292,11 +303,7 @@ class Composer {
       composition.infeasible_reason = why_none(composition, relaxed);
       return;
     }
-    if (request_.area_steps) {
-      std::vector<MixedCell> cells;
-      for (const FamilyCell& cell : composition.catalogue) cells.push_back(cell.mixed);
-      mixture = rounded_mixture(cells, rules(request_.max_zones), mixture, *request_.area_steps);
-    }
+    mixture = rounded(composition, mixture);
     composition.unlimited_merit = relaxed.merit;
     composition.best =
         PartOfZones{zones_of(composition, mixture), mixture, request_.max_zones.value_or(mixture.zones.size())};
@@ -304,6 +311,25 @@ class Composer {
       composition.proof = Proof::none;
     else
       composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
+  }
+
+  /// Returns a mixture whose area fractions are multiples of a step. The step is that of the request, or the largest
+  /// step that lowers the merit by less than its standard error. If there is no such step, returns `mixture`.
+  Mixture rounded(const Composition& composition, const Mixture& mixture) const {
+    std::vector<MixedCell> cells;
+    for (const FamilyCell& cell : composition.catalogue) cells.push_back(cell.mixed);
+    const MixtureRules limits = rules(request_.max_zones);
+    if (request_.area_steps) return rounded_mixture(cells, limits, mixture, *request_.area_steps);
+    const double error = error_of_merit(composition.catalogue, mixture);
+    for (const std::size_t steps : kAreaSteps) {
+      const Mixture found = rounded_mixture(cells, limits, mixture, steps);
+      const auto is_multiple = [&](const ZoneFraction& zone) {
+        const double multiple = zone.fraction * static_cast<double>(steps);
+        return std::abs(multiple - std::round(multiple)) < 1e-9;
+      };
+      if (found.merit >= mixture.merit - error && std::ranges::all_of(found.zones, is_multiple)) return found;
+    }
+    return mixture;
   }
 
   /// Returns the indices of those bounds over the part that together exclude every mixture of cells. Returns an empty
@@ -392,7 +418,7 @@ std::vector<Zone> robust_zones(const Composition& composition) {
 compute::StoreLayout compose_layout(const Study& study) {
   compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
-  layout.inputs.resize(study.parameters.size());  // no inputs for the level of accuracy
+  layout.inputs.resize(study.parameters.size());  // stored cells have no inputs for ErrorLevel
   // Constraints and objectives of the mixture do not change the values of cells. They are therefore not part of the
   // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {

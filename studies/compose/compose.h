@@ -41,12 +41,12 @@ struct ComposeRequest {
   double max_area_fraction = 1.0;
   std::optional<std::size_t> max_zones;  ///< maximum number of zones; no limit if empty
   /// Number of equal steps into which the whole area is divided. The area fractions of the best part are multiples of
-  /// one step. Empty: the fractions are not rounded.
+  /// one step. Empty: the largest step is used that lowers the merit by less than its standard error.
   std::optional<std::size_t> area_steps;
-  std::size_t scan = 65;           ///< number of cells of the first scan, per combination of discrete values
+  std::size_t scan = 65;           ///< number of cells in the first scan, for each combination of discrete values
   std::size_t rounds = 4;          ///< maximum number of searches with dual prices
-  std::size_t starts = 3;          ///< number of cells from which each search with dual prices starts
-  int evaluations_per_start = 20;  ///< maximum number of cells that are evaluated from each start
+  std::size_t starts = 3;          ///< number of cells at which each search with dual prices starts
+  int evaluations_per_start = 20;  ///< maximum number of evaluated cell designs per search
   std::optional<ErrorSpread> errors;
 };
 
@@ -56,6 +56,7 @@ struct FamilyCell {
   PointValues values;
   MixedCell mixed;  ///< values of the goals, in the order of the request, and values whose means over the part are
                     ///< used: first those for `part_constraints`, then that for `front`
+  std::vector<double> goal_errors = {};  ///< standard errors of the goals
 };
 
 struct Zone {
@@ -145,17 +146,19 @@ compute::StoreLayout compose_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep compose_scan(const Study& study, const ComposeRequest& request);
 
-/// Chooses the best part from the cells that an interrupted search has evaluated, and from all other cells in the
-/// store.
+/// Chooses the best part after an interrupted search, from all cells in the store. These include the cells that the
+/// search has evaluated.
 /// \pre compose() has returned an incomplete composition
 void choose_best_so_far(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
                         Composition& composition);
 
-/// Searches for the mixture of cells that makes the best part. First, the family of cells is scanned, and `optimise`
-/// improves the best cells of the scan. Then cells are added that improve the mixture according to the dual prices of
-/// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
-/// already in the store are not computed again, and the result is the same. An interrupted search returns its catalogue
-/// of cells, without a part. `observer` receives the best part so far that consists of one kind of cell.
+/// Searches for the mixture of cells that makes the best part:
+/// 1. The family of cells is scanned, and optimise() improves the best cells of the scan.
+/// 2. Cells are added that improve the mixture according to the dual prices of its linear programme (column
+/// generation). This step ends when no further cell improves the mixture.
+/// Cells that are already in the store are not computed again, and the result is the same. An interrupted search
+/// returns its catalogue of cells without a part. While the search runs, `observer` receives the best part so far that
+/// consists of one kind of cell.
 /// \throw OutputError under the same conditions as ResultStore::record()
 Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
                     OptimiseObserver* observer, const Cancellation* cancel);

@@ -1,4 +1,5 @@
 #include "studies/compose/goals.h"
+#include "studies/quantity/study_names.h"
 
 #include <fmt/format.h>
 
@@ -27,8 +28,7 @@ std::string value_text(const Parameter& parameter, const ParameterValue& value) 
 }  // namespace
 
 const Quantity& goal_of(const Study& study, const ComposeRequest& request, std::size_t goal) {
-  return **std::ranges::find_if(study.quantities,
-                                [&](const auto& quantity) { return quantity->name() == request.goals[goal]; });
+  return *quantity_named(study, request.goals[goal]);
 }
 
 bool are_margins(const Study& study, const ComposeRequest& request) {

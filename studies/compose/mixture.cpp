@@ -353,8 +353,8 @@ Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& ru
 
 namespace {
 
-/// Maximum number of zones for which all roundings are compared. With more zones, the fractions with the largest
-/// remainders are rounded up.
+/// Maximum number of zones for which all combinations of rounding up and down are compared. With more zones, the
+/// fractions with the largest remainders are rounded up.
 constexpr std::size_t kMaxZonesToCompare = 12;
 
 bool satisfies(const Mixture& mixture, const MixtureRules& rules) {

@@ -73,10 +73,10 @@ struct Mixture {
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules,
                      const Cancellation* cancel = nullptr, std::size_t max_sets = 10'000);
 
-/// Returns a mixture of the same cells whose fractions are multiples of a step. Each fraction is the multiple below or
-/// above the given fraction. Among all such mixtures that satisfy the rules, the one with the largest merit is
-/// returned. Returns `mixture` if there is no such mixture. The bound and the prices of `mixture` are not changed.
-/// \param steps number of steps that make up the whole area
+/// Rounds the area fractions of a mixture to multiples of a step. Each fraction is rounded up or down. Among all
+/// combinations that satisfy the rules, the mixture with the largest merit is returned. If there is no such
+/// combination, `mixture` is returned. The upper bound of the merit and the dual prices are copied from `mixture`.
+/// \param steps number of steps into which the whole area is divided
 /// \pre the mixture is feasible
 Mixture rounded_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Mixture& mixture,
                         std::size_t steps);

@@ -1,5 +1,6 @@
 #include "studies/drawing/array_figures.h"
 #include "core/overloaded.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "geometry/elements/whole_elements.h"
 
 #include <cmath>
@@ -64,10 +65,12 @@ void measure_prisms(ArrayFigures& a, const design::Design& design, const Part& p
 void measure_cubes(ArrayFigures& a, const Part& part) {
   const PartSpec& spec = part.spec;
   const Rectangle box = geometry::bounding_box(geometry::element_cell(spec.element).outline);
-  a.aperture_mm = std::visit(Overloaded{[](const geometry::RtpElement&) { return 0.0; },
-                                        [](const geometry::RoundCube& cube) { return cube.diameter_mm; },
-                                        [](const auto& cube) { return cube.aperture_mm; }},
-                             spec.element);
+  a.aperture_mm = std::visit(
+      Overloaded{[](const geometry::RtpElement&) { return 0.0; },
+                 [](const geometry::RoundCube& cube) { return cube.diameter_mm; },
+                 [](const geometry::RuledCells& ruled) { return geometry::aperture_of_mean_cell_mm(*ruled.pattern); },
+                 [](const auto& cube) { return cube.aperture_mm; }},
+      spec.element);
   a.size_mm = box.size();
   a.pitch_mm = 0.5 * a.aperture_mm * Vec2(3.0, std::sqrt(3.0));
   a.block_mm = a.extent_mm;

@@ -80,6 +80,7 @@ void add_cube(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
 }
 
 void add_element(PlanPanel& panel, const PartSpec& spec, const ArrayFigures& a) {
+  if (std::holds_alternative<geometry::RuledCells>(spec.element)) return;
   if (std::holds_alternative<RtpElement>(spec.element))
     add_prism(panel.dimensions, spec, a);
   else
@@ -250,7 +251,7 @@ std::string arrangement_text(const Part& part) {
   return text;
 }
 
-/// Adds remarks on the mount and the chamfer of a round cube corner.
+/// Adds remarks about the mount and the chamfer of a round cube corner.
 void add_stops(std::vector<std::string>& remarks, const PartSpec& spec) {
   const auto* const cube = std::get_if<geometry::RoundCube>(&spec.element);
   if (cube == nullptr) return;

@@ -104,8 +104,8 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
 /// Number of cells of the grid along the longer side of a part with which its curved entrance face is drawn.
 constexpr int kEntranceCells = 220;
 
-/// Returns the lower borders of the sides of a part, as lines from vertex to vertex of its back surface. A plane back
-/// has no such borders. The result is then the outline of the part on z = 0.
+/// Returns the lower borders of a part's sides, as lines between vertices of its back surface. If the back is plane,
+/// returns the outline of the part at z = 0.
 std::vector<std::vector<Vec3>> lower_borders_of_sides(const Part& part) {
   std::vector<std::vector<Vec3>> borders;
   for (const geometry::Placement& placement : part.placements) {
@@ -125,7 +125,7 @@ std::vector<std::vector<Vec3>> lower_borders_of_sides(const Part& part) {
   return borders;
 }
 
-/// Returns true if a point is a corner of an outline at which the direction changes by more than 20 degrees.
+/// Returns true if a point is a corner of an outline with a change of direction by more than 20 degrees.
 bool is_sharp_corner(const geometry::Polygon& outline, const Vec2& point) {
   constexpr double kCosineOfLimit = 0.94;
   const std::size_t count = outline.size();
@@ -137,9 +137,9 @@ bool is_sharp_corner(const geometry::Polygon& outline, const Vec2& point) {
   return false;
 }
 
-/// Appends the polygons of a side of a part, above one line of its lower border. The side is divided into strips that
-/// are at most `cell_mm` wide.
-/// \param above function that returns the point of the entrance face above a point of the plan
+/// Appends the polygons of a side of a part above one line of its lower border. The side is divided into strips with a
+/// width of at most `cell_mm`.
+/// \param above returns the point of the entrance face above a point in plan
 template <class Above>
 void add_side(DesignView& view, const Vec3& from, const Vec3& to, double cell_mm, const Above& above) {
   const Vec3 along = to - from;

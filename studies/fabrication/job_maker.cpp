@@ -157,6 +157,8 @@ void check_zones(const design::Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const InputLocation where = design.where(schema::path_of_entry("zone", z));
+    if (std::holds_alternative<geometry::RuledCells>(zones[z].elements.element))
+      throw InputError(where, "ruled cells cannot be cut, because the processes of retrace do not rule grooves");
     if (is_prism(zones[z].elements))
       throw InputError(where, "only cube corners can be cut in a part with zones, got prisms");
     if (zones[z].elements.element.index() != zones.front().elements.element.index())
@@ -300,6 +302,8 @@ void check_substrate(const design::Design& design, const JobRequest& request) {
         "must be \"honeycomb\" for a job, because pins are not cut but ground one by one and bundled, got \"pins\"");
   if (std::holds_alternative<geometry::OffsetSubstrate>(design.part().substrate->shape))
     throw InputError(design.where("substrate.kind"), "must not be \"offset\" for a job");
+  if (std::holds_alternative<geometry::StepFace>(design.part().substrate->shape))
+    throw InputError(design.where("substrate.kind"), "must not be \"step\" for a job");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
     throw InputError(Field{"workpiece"},
                      "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));

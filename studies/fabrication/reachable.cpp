@@ -88,6 +88,10 @@ void check_is_cut(const design::Design& design) {
         design.where("element.kind"),
         "must be \"rtp\", \"hexagonal_icc\" or \"triangular_icc\" for a job, because the processes of retrace "
         "do not cut single round cube corners, got \"round_icc\"");
+  if (std::holds_alternative<geometry::RuledCells>(design.part().element))
+    throw InputError(design.where("element.kind"),
+                     "must be \"rtp\", \"hexagonal_icc\" or \"triangular_icc\" for a job, because the processes of "
+                     "retrace do not rule grooves, got \"ruled\"");
 }
 
 namespace {

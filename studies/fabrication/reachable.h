@@ -32,7 +32,7 @@ double reachable_fraction(const geometry::Element& element, double tool_width_mm
 std::string reach_json(const ReachablePart& part, const JobRequest& request);
 std::string reach_table(const ReachablePart& part);
 
-/// Checks that a job can cut elements of the kind that the design contains.
+/// Checks that jobs support the kind of the design's elements.
 /// \throw InputError for a round cube corner
 void check_is_cut(const design::Design& design);
 

@@ -67,11 +67,15 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                          std::shared_ptr<const Background> background)
     : design_(std::move(design)), request_(std::move(request)), background_(std::move(background)) {
   requests::check(request_);
-  design::require_supported(
-      design_,
-      {.what = "a camera image", .balls = true, .solids = true, .entrances = true, .shells = true, .wet_backs = true});
+  design::require_supported(design_, {.what = "a camera image",
+                                      .balls = true,
+                                      .solids = true,
+                                      .entrances = true,
+                                      .shells = true,
+                                      .wet_backs = true,
+                                      .cell_spreads = false});
   if (!design_.shells.empty() && design_.is_infinite())
-    throw InputError(design_.where("array.extent"), "camera images show shells only in front of finite parts");
+    throw InputError(design_.where("array.extent"), "must be \"finite\" for camera images of a part behind shells");
   lamp_ = lamp_of(request_);
   const materials::SpectralCurve dye = read_dye(request_.dye);
   if (!background_) background_ = background_of(request_);
@@ -256,9 +260,9 @@ void add_warnings(CameraResult& result) {
                      name, fixed(image.relative_noise(), 4), shortest(request.noise), image.passes,
                      passes_needed(image, request), CameraStudy::kMaxPasses)});
   if (result.no_diffraction && request.diffraction)
-    result.warnings.push_back({"no_diffraction", fmt::format("{}: the light of the lamp is that of geometrical optics, "
-                                                             "without diffraction: {}",
-                                                             name, text_of(*result.no_diffraction))});
+    result.warnings.push_back(
+        {"no_diffraction", fmt::format("{}: the light of the lamp is computed without diffraction: {}", name,
+                                       text_of(*result.no_diffraction))});
   const double illuminance_lx = result.scene.lamp.illuminance_lx;
   const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye(result.scene).normalized().z())
                                      : image.part_mean() / std::max(1e-300, illuminance_lx);

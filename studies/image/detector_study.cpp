@@ -8,6 +8,9 @@
 
 #include "core/error.h"
 #include "core/task_progress.h"
+#include "design/cell_interference_of_design.h"
+#include "design/light_and_index.h"
+#include "materials/spectral_bands.h"
 #include "raytrace/engines/wavelengths.h"
 #include "requests/descriptions.h"
 
@@ -212,6 +215,24 @@ double DetectorStudy::window_deg(const raytrace::AngularRings& rings, bool with_
   return std::min(rounded_up(wanted_deg), 90.0);
 }
 
+/// Returns the parameters with which the fields of different cells are added, at one wavelength. Returns nothing if
+/// their intensities are added.
+std::optional<raytrace::CellInterference> DetectorStudy::cell_interference(const design::SpectralOptics& light) const {
+  const design::CellSpread* const spread = design_.cell_spread();
+  if (spread == nullptr) return std::nullopt;
+  raytrace::CellInterference cells = design::interference_of(*spread, light.optics.index);
+  const design::LightSpectrum* const lamp = design_.light.spectrum();
+  if (lamp == nullptr || lamp->kind == design::LightSpectrum::Kind::lines) return cells;
+  materials::Spectrum traced;
+  for (const design::SpectralOptics& one : model_.spectral) {
+    traced.wavelengths_nm.push_back(one.wavelength_nm);
+    traced.weights.push_back(one.weight);
+  }
+  cells.band_nm = materials::spectral_bands(
+      traced, design::flux_of(design_))[static_cast<std::size_t>(&light - model_.spectral.data())];
+  return cells;
+}
+
 /// Returns the far field of one wavelength with diffraction: the power per steradian in each bin of directions, and
 /// then the power outside of the bins. Returns nothing if the computation was cancelled.
 std::optional<std::vector<double>> DetectorStudy::diffracted_map(const design::SpectralOptics& light,
@@ -228,6 +249,7 @@ std::optional<std::vector<double>> DetectorStudy::diffracted_map(const design::S
   policy.max_polygons =
       static_cast<std::size_t>(std::clamp(kPolygonsTimesBins / static_cast<double>(angles.size()), 100.0, 20'000.0));
   policy.cancel = cancel;
+  policy.interference = cell_interference(light);
   std::vector<raytrace::FarFieldRay> specular;
   const auto field = raytrace::detector_far_field(model_.part, light.optics, illumination_of(design_, request_),
                                                   setting.acceptance_deg, beams, policy, specular);
@@ -309,6 +331,11 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   result.face_error = std::max(raytrace::largest_relative_error(result.maps.leaving, kDarkFace),
                                raytrace::largest_relative_error(result.maps.entering, kDarkFace));
   result.angle_error = raytrace::largest_relative_error(result.maps.per_sr, kDarkAngles);
+  if (design_.cell_spread() != nullptr && result.maps.complete && !result.has_diffraction)
+    result.warnings.push_back(
+        {"no_cell_interference", fmt::format("{}: array.depth_spread_nm has no effect, because the far field does not "
+                                             "include diffraction",
+                                             design_.source_name())});
   result.engine = exact ? "exact" : "embree";
   result.complete = result.maps.complete;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -78,6 +78,7 @@ class DetectorStudy {
   raytrace::DetectorSetting setting_of(const raytrace::PixelGrid& face, double window_deg) const;
   raytrace::BeamPolicy beam_policy() const;
   double window_deg(const raytrace::AngularRings& rings, bool with_diffraction) const;
+  std::optional<raytrace::CellInterference> cell_interference(const design::SpectralOptics& light) const;
   std::optional<std::vector<double>> diffracted_map(const design::SpectralOptics& light,
                                                     const raytrace::DetectorSetting& setting,
                                                     const Cancellation* cancel) const;

@@ -114,7 +114,8 @@ std::optional<std::array<double, 3>> tint_of(const design::Design& design, const
 
 RoadStudy::RoadStudy(design::Design design, RoadRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
-  design::require_supported(design_, {.what = "retrace image", .solids = true, .entrances = true, .wet_backs = true});
+  design::require_supported(
+      design_, {.what = "retrace image", .solids = true, .entrances = true, .shells = true, .wet_backs = true});
   requests::check(request_);
   scene_ = scene_of(request_, face_of(design_));
   if (!request_.lamp.empty()) scene_.lamp = read_lamp(request_.lamp, Field{"lamp"});

@@ -15,6 +15,7 @@
 #include "geometry/elements/lattice.h"
 #include "geometry/entrance/curved_boundary.h"
 #include "raytrace/balls/ball_forms.h"
+#include "requests/descriptions.h"
 
 namespace retrace::studies {
 namespace {
@@ -252,7 +253,9 @@ WetReport report_wet_back(const design::Design& design, const design::OpticalMod
 
 }  // namespace
 
-Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library) {
+Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library,
+                   const InspectRequest& request) {
+  requests::check(request);
   if (design.balls()) return inspect_balls(design, library);
   const design::OpticalModel model = design::make_model(design, library);
   const geometry::Part& part = model.part;
@@ -265,6 +268,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   result.facet_area_mm2 = part.retro_facet_area_mm2;
   result.entrance_area_mm2 = part.entrance_area_mm2;
   if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
+  if (!part.period_mm) result.tool = report_tool(part, model.entrance, request);
   if (!design.shells.empty()) result.shells = report_shells(design, model);
   if (design.zoned()) {
     add_zones(result, model);
@@ -278,7 +282,10 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
     return result;
   }
   if (!model.optics.facet_form.is_plane()) result.form = design::report_form(design, model.optics.facet_form);
-  const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
+  const auto* const ruled = std::get_if<geometry::RuledCells>(&design.part().element);
+  const double aperture = ruled != nullptr ? ruled->pattern->mean_cell_mm2
+                                           : geometry::area(geometry::aperture_outline(design.part().element));
+  if (ruled != nullptr) result.ruled = report_ruled(*ruled->pattern);
   result.full_element_area_fraction = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {
     add_base(result, part);
@@ -290,6 +297,7 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   if (model.wet_elements) result.wet_back = report_wet_back(design, model);
   result.dead_zone_fraction = geometry::edge_fraction(geometry::finished_cell(
       geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
+  if (result.ruled && design.part().edges.is_sharp()) result.dead_zone_fraction = result.ruled->dead_fraction;
   result.boundary = boundary_finding(design, model);
   add_warnings(result, part);
   return result;

@@ -15,10 +15,13 @@
 #include "design/total_reflection.h"
 #include "geometry/elements/substrate_checks.h"
 #include "materials/io/material_library.h"
+#include "requests/inspect.h"
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 #include "studies/inspect/entrance_state_report.h"
+#include "studies/inspect/ruled_report.h"
 #include "studies/inspect/shell_report.h"
+#include "studies/inspect/tool_report.h"
 #include "studies/inspect/zone_report.h"
 
 namespace retrace::studies {
@@ -82,6 +85,7 @@ struct Inspection {
   std::optional<EntranceReport> entrance;
   std::optional<ShellsReport> shells;  ///< shells in front of the part; empty if there are none
   std::optional<WetReport> wet_back;
+  std::optional<RuledReport> ruled;        ///< cells of a ruled array; empty for other kinds of elements
   std::optional<ZonesReport> zones;        ///< zones of the part; empty if it has none
   std::optional<design::FormReport> form;  ///< form of the facets; empty for plane facets
   CoatingReports coating;
@@ -89,12 +93,14 @@ struct Inspection {
   double dead_zone_fraction = 0.0;  ///< fraction of an element's plan that rounded and chamfered edges occupy
   /// Properties for kind = "ball". If they are set, only this member, the light, the counts and the areas are valid.
   std::optional<BallFigures> balls;
-  std::string boundary;  ///< result of the boundary check
+  std::optional<ToolReport> tool;  ///< properties for the toolmaker; empty for infinite arrays and for balls
+  std::string boundary;            ///< result of the boundary check
   Warnings warnings;
 };
 
 /// Returns the properties of a design.
-/// \throw InputError under the same conditions as make_model()
-Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library);
+/// \throw InputError under the same conditions as make_model(), and if the request is invalid
+Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library,
+                   const InspectRequest& request = {});
 
 }  // namespace retrace::studies

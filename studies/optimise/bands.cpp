@@ -8,7 +8,9 @@
 
 #include "core/number_format.h"
 #include "studies/optimise/evaluator.h"
+#include "studies/optimise/noisy_search.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,13 +33,14 @@ double first_step(const std::string& key, double nominal) {
 /// Computes the first quantity of the objective for a design in which the value of one key is changed.
 class OffDesign {
  public:
+  /// \param level accuracy of the quantity; all values use common random numbers
   OffDesign(const Study& study, const OptimiseRequest& request, const Variant& best, const std::string& key,
-            const Cancellation* cancel)
+            const ErrorLevel& level, const Cancellation* cancel)
       : study_(study), values_(best.values), key_(key), cancel_(cancel) {
+    if (request.has_levels) study_.level = level;
     const auto& [name, weight] = request.objective.weights.front();
     sign_ = weight < 0.0 ? -1.0 : 1.0;
-    for (const auto& quantity : study.quantities)
-      if (quantity->name() == name) quantity_ = quantity.get();
+    quantity_ = quantity_named(study_, name);
     for (std::size_t k = 0; k < study.parameters.size(); ++k)
       if (std::find(study.parameters[k].keys.begin(), study.parameters[k].keys.end(), key) !=
           study.parameters[k].keys.end())
@@ -71,7 +74,7 @@ class OffDesign {
   }
 
  private:
-  const Study& study_;
+  Study study_;
   PointValues values_;
   const std::string& key_;
   const Cancellation* cancel_;
@@ -79,6 +82,16 @@ class OffDesign {
   const Quantity* quantity_ = nullptr;
   std::optional<std::size_t> parameter_;
 };
+
+/// Returns the level of accuracy for the search of a band. Its error is small compared with the loss at the end of the
+/// band. Errors that are smaller take more time and hardly change the band.
+ErrorLevel level_of_band(const OptimiseRequest& request, const Variant& best) {
+  // Maximum error of a value, relative to the loss at the end of the band.
+  constexpr double max_error = 0.05;
+  if (best.objective_error <= 0.0) return {};
+  const double allowed = max_error * request.band_loss * std::abs(*best.objective);
+  return {std::clamp(allowed / best.objective_error, 1.0, NoisySearchSettings{}.scan_scale), 0};
+}
 
 /// Returns the maximum change of the key in one direction for which the relative loss of the quantity stays below
 /// `loss`. Returns nothing if designs become invalid before this loss is reached, or if the largest tested change
@@ -112,7 +125,7 @@ std::optional<double> band_to(const OffDesign& off, double nominal, double direc
 
 ToleranceBand tolerance_band(const Study& study, const OptimiseRequest& request, const Variant& best,
                              const std::string& key, const Cancellation* cancel) {
-  const OffDesign off(study, request, best, key, cancel);
+  const OffDesign off(study, request, best, key, level_of_band(request, best), cancel);
   ToleranceBand band{key, 0.0, {}, {}};
   const std::optional<double> nominal = off.nominal();
   if (!nominal) return band;

@@ -14,12 +14,13 @@
 #include "raytrace/engines/engine.h"
 #include "studies/optimise/refine.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
 
 constexpr std::uint64_t kMaxCombinations = 10'000;
-/// Maximum number of points with rounder values that rounder_points() returns.
+/// Maximum number of points that rounder_points() returns.
 constexpr std::size_t kMaxRoundPoints = 60;
 
 std::vector<PointValues> combinations_of(const Study& study) {
@@ -45,11 +46,6 @@ std::vector<PointValues> combinations_of(const Study& study) {
   return all;
 }
 
-const Quantity* quantity_of(const Study& study, const std::string& name) {
-  const auto found = std::ranges::find_if(study.quantities, [&](const auto& each) { return each->name() == name; });
-  return found == study.quantities.end() ? nullptr : found->get();
-}
-
 }  // namespace
 
 Scan::Scan(const Study& study, const OptimiseRequest& request)
@@ -60,8 +56,8 @@ Scan::Scan(const Study& study, const OptimiseRequest& request)
 
 PointValues Scan::with(PointValues design, const std::vector<double>& fractions) const {
   for (std::size_t k = 0; k < continuous_.size(); ++k) {
-    // The value is rounded to 13 digits. A round value is therefore unchanged when it is converted to a fraction and
-    // back.
+    // The value is rounded to 13 digits, so that conversion to a fraction and back does not change a value with few
+    // digits.
     const double value = study_.parameters[continuous_[k]].interval->at(fractions[k]);
     design[continuous_[k]] = Parameter::value_of(std::stod(fmt::format("{:.13g}", value)));
   }
@@ -84,7 +80,8 @@ const WholeSizes& Scan::whole_sizes(std::size_t combination, std::size_t k) cons
       const design::Design design = make_candidate(study_, combinations_[combination]).design();
       for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = WholeSizes(design, study_.parameters[continuous_[i]]);
     } catch (const InputError&) {
-      // The search reports an invalid design when it evaluates the design. Here, the sizes remain unchanged.
+      // The design is invalid. The search reports the error when it evaluates the design, so no sizes are adjusted
+      // here.
     }
     found = whole_sizes_.emplace(combination, std::move(sizes)).first;
   }
@@ -94,7 +91,7 @@ const WholeSizes& Scan::whole_sizes(std::size_t combination, std::size_t k) cons
 std::vector<double> Scan::at_whole_sizes(std::size_t combination, std::vector<double> fractions) const {
   for (std::size_t k = 0; k < fractions.size(); ++k) {
     const WholeSizes& sizes = whole_sizes(combination, k);
-    // The scan always contains both ends of an interval, so they are not moved.
+    // The scan must contain both ends of each interval. Only values between the ends are moved.
     if (sizes.is_empty() || fractions[k] <= 0.0 || fractions[k] >= 1.0) continue;
     const Interval& interval = *study_.parameters[continuous_[k]].interval;
     const double half = 0.5 * spacing();
@@ -143,8 +140,8 @@ bool may_be_noisy(const Study& study) {
     if (!raytrace::may_be_exact(engine)) return true;
     if (engine != raytrace::Engine::automatic) return false;
     const design::Design& design = candidate.design();
-    // If edges are rounded or facets have random tilts, there are too many beams. The engine `auto` then traces rays,
-    // whose results have random errors.
+    // Rounded edges and random facet tilts produce too many beams for the exact engine. The engine `auto` then traces
+    // rays, and the results of rays have random errors.
     const bool has_many_beams = design.elements() != nullptr &&
                                 (!design.part().edges.is_sharp() || design.part().random_tilts.sigma_arcmin > 0.0);
     if (candidate.analysis().rays || has_many_beams) return true;
@@ -176,7 +173,7 @@ std::vector<Observation> DesignFunction::observe(const std::vector<SearchPoint>&
   return seen;
 }
 
-/// Checks only the constraints on quantities that are computed without tracing.
+/// Checks only constraints on quantities that are computed without tracing, such as areas and machining times.
 bool DesignFunction::is_allowed(const SearchPoint& point) const {
   const auto known = allowed_.find(point);
   if (known != allowed_.end()) return known->second;
@@ -184,7 +181,7 @@ bool DesignFunction::is_allowed(const SearchPoint& point) const {
   try {
     const Candidate candidate = make_candidate(study_, design_at(point));
     for (const Constraint& constraint : request_.constraints) {
-      const Quantity* const quantity = quantity_of(study_, constraint.quantity);
+      const Quantity* const quantity = quantity_named(study_, constraint.quantity);
       if (quantity == nullptr || !quantity->tracing().empty()) continue;
       const std::optional<Measured> measured = quantity->measure(candidate, nullptr);
       is_allowed = is_allowed && measured && constraint.violation(measured->value) <= 0.0;
@@ -214,8 +211,8 @@ std::vector<SearchPoint> DesignFunction::peaks_near(const SearchPoint& point, do
 
 std::vector<SearchPoint> DesignFunction::rounder_points(const SearchPoint& point, double within) const {
   if (!request_.is_rounded) return {};
-  // Each parameter has a list of values near its own value, the roundest first. Point i uses entry i of every list. All
-  // parameters of a point are therefore rounded to a similar number of digits.
+  // `values` contains one list for each parameter: values near the present value, ordered by increasing number of
+  // digits. Point i combines entry i of all lists, so all its parameters have a similar number of digits.
   std::vector<std::vector<double>> values;
   std::size_t count = 0;
   for (std::size_t k = 0; k < point.fractions.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps the designs of a study to the points of a search. Internal to studies/optimise.
+// Converts between the designs of a study and the points of a search. Internal to studies/optimise.
 
 #include <cstddef>
 #include <map>
@@ -13,30 +13,32 @@
 
 namespace retrace::studies {
 
-/// Designs of the first scan. Also converts between designs and positions in the intervals of their parameters.
+/// Designs that an optimization evaluates first: all combinations of discrete values, each with a set of continuous
+/// values. Also converts continuous values to positions in their intervals and back.
 class Scan {
  public:
-  /// \throw InputError for too many combinations of discrete values
+  /// \throw InputError if there are too many combinations of discrete values
   Scan(const Study& study, const OptimiseRequest& request);
 
   /// Returns the indices of the parameters that vary continuously between two limits.
   const std::vector<std::size_t>& continuous() const { return continuous_; }
-  /// Returns all combinations of discrete values. Continuous parameters are set to the middle of their intervals.
+  /// Returns all combinations of discrete values. Continuous parameters have the values in the middle of their
+  /// intervals.
   const std::vector<PointValues>& combinations() const { return combinations_; }
-  /// Replaces the values of the continuous parameters of a design and returns the new design.
-  /// \param fractions positions in the intervals
+  /// Returns a copy of a design with other values of the continuous parameters.
+  /// \param fractions position of each value in the interval of its parameter: 0 at the start, 1 at the end
   PointValues with(PointValues design, const std::vector<double>& fractions) const;
-  /// Returns the positions of the continuous parameters of a design in their intervals.
+  /// Returns the position of each continuous parameter of a design in its interval: 0 at the start, 1 at the end.
   std::vector<double> fractions_of(const PointValues& design) const;
-  /// Returns the designs of the scan for one combination of discrete values, without duplicates. For one continuous
-  /// parameter, the designs are equally spaced. For several continuous parameters, the designs are the corners of the
-  /// intervals and Sobol points. Sizes of prisms are moved by up to half a step of the scan if a whole number of
-  /// elements then fills the part.
+  /// Returns the designs of the scan for one combination of discrete values, without duplicates. A single continuous
+  /// parameter is sampled at equal steps. Several continuous parameters are sampled at the corners of their intervals
+  /// and at Sobol points. Sizes of prisms are then moved by up to half a step to a size with which a whole number of
+  /// elements fills the part.
   std::vector<PointValues> of(std::size_t combination) const;
-  /// Returns the distance between neighbouring points of the scan, as a fraction of the interval.
+  /// Returns the distance between neighbouring designs of the scan, as a fraction of the interval.
   double spacing() const { return 1.0 / static_cast<double>(request_.scan - 1); }
-  /// Returns the sizes for which a whole number of elements fills the part. `k` is the index of the parameter in
-  /// continuous().
+  /// Returns the sizes with which a whole number of elements fills the part, for one combination of discrete values.
+  /// \param k index of the parameter in continuous()
   const WholeSizes& whole_sizes(std::size_t combination, std::size_t k) const;
 
  private:
@@ -49,11 +51,11 @@ class Scan {
   mutable std::map<std::size_t, std::vector<WholeSizes>> whole_sizes_;
 };
 
-/// Returns true if quantities of the study may have random errors. The decision uses the engine and the first design of
-/// the study.
+/// Returns true if quantities of the study may have random errors, judged from the engine and the first design of the
+/// study.
 bool may_be_noisy(const Study& study);
 
-/// The objective and the constraints of a study as a function that search_with_noise() maximizes.
+/// Objective and constraints of a study, as a function that search_with_noise() maximizes.
 class DesignFunction final : public SearchedFunction {
  public:
   DesignFunction(const Study& study, const OptimiseRequest& request, const Scan& scan, Evaluator& evaluator)

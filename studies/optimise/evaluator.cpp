@@ -11,14 +11,17 @@
 #include "core/task_progress.h"
 #include "core/threads.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
 namespace {
 
-std::string text_of(const std::variant<double, std::string>& value) {
+/// Adds a value to a key, which is a text that identifies a design or a stored point.
+void add_to_key(std::string& key, const std::variant<double, std::string>& value) {
   const double* const number = std::get_if<double>(&value);
-  return number != nullptr ? shortest(*number) : std::get<std::string>(value);
+  key += number != nullptr ? shortest(*number) : std::get<std::string>(value);
+  key += '\n';
 }
 
 /// Reports the progress of a group of designs to an observer. The observer may be null.
@@ -38,14 +41,16 @@ class GroupProgress : public Progress {
 
 std::string Evaluator::key_of(const PointValues& design) {
   std::string key;
-  for (const ParameterValue& value : design) key += text_of(value.shown) + '\n';
+  for (const ParameterValue& value : design) add_to_key(key, value.shown);
   return key;
 }
 
 std::string Evaluator::key_of(const PointValues& design, const ErrorLevel& level) const {
-  const std::string key = key_of(design);
+  std::string key = key_of(design);
   if (!request_.has_levels) return key;
-  return key + text_of(level.scale) + '\n' + text_of(static_cast<double>(level.replicate)) + '\n';
+  add_to_key(key, level.scale);
+  add_to_key(key, static_cast<double>(level.replicate));
+  return key;
 }
 
 Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
@@ -53,13 +58,13 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
     : study_(study), request_(request), store_(store), observer_(observer), cancel_(cancel) {
   for (compute::StoredPoint& point : store.points()) {
     std::string key;
-    for (const compute::StoredValue& value : point.inputs) key += text_of(value) + '\n';
+    for (const compute::StoredValue& value : point.inputs) add_to_key(key, value);
     used_numbers_.insert(point.point);
     stored_.emplace(std::move(key), std::move(point));
   }
 }
 
-/// Returns the study with its analysis settings adapted to a level of accuracy.
+/// Returns a copy of the study whose target error and random numbers correspond to a level of accuracy.
 const Study& Evaluator::study_at(const ErrorLevel& level) {
   if (!request_.has_levels) return study_;
   const auto found = studies_.find(level);
@@ -123,7 +128,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   });
   bool is_interrupted = is_cancelled(cancel_);
   for (std::size_t k = 0; k < open.size(); ++k) {
-    // If the search is interrupted, all finished designs are stored before the search ends.
+    // If the user interrupts the search, all finished designs are stored before the search ends.
     is_interrupted = is_interrupted || !points[k];
     if (!points[k]) continue;
     if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
@@ -135,7 +140,7 @@ std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs
   return found;
 }
 
-/// Adds a stored point to the results of a design at a level of accuracy.
+/// Adds a stored result to the results of its design. `level` is the accuracy with which the result was computed.
 void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const compute::StoredPoint& point) {
   const std::string key = key_of(design);
   std::map<ErrorLevel, Variant>& results = by_level_[key];
@@ -150,7 +155,7 @@ void Evaluator::keep(const PointValues& design, const ErrorLevel& level, const c
   evaluated_[at->second].number = number;
 }
 
-/// Returns the mean of the results with the smallest target error.
+/// Returns the mean of the most accurate results, which are those with the smallest target error.
 Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   Variant mean = results.begin()->second;
   std::size_t count = 0;
@@ -175,7 +180,7 @@ Variant Evaluator::mean_of(const std::map<ErrorLevel, Variant>& results) const {
   return mean;
 }
 
-/// Reports a design to the observer if it is better than all designs that were reported before.
+/// Reports a design to the observer if it is better than all previously reported designs.
 void Evaluator::report_best(const Variant& variant) {
   if (!variant.feasible()) return;
   const double value = variant.cautious_objective();
@@ -219,15 +224,13 @@ Variant Evaluator::variant_of(const compute::StoredPoint& point, const PointValu
 }
 
 std::optional<double> Evaluator::value(const Variant& variant, const std::string& quantity) const {
-  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
-    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].value;
-  return std::nullopt;
+  const std::optional<std::size_t> k = quantity_index(study_, quantity);
+  return k && *k < variant.outputs.size() ? variant.outputs[*k].value : std::nullopt;
 }
 
 double Evaluator::error_of(const Variant& variant, const std::string& quantity) const {
-  for (std::size_t k = 0; k < variant.outputs.size(); ++k)
-    if (study_.quantities[k]->name() == quantity) return variant.outputs[k].std_error;
-  return 0.0;
+  const std::optional<std::size_t> k = quantity_index(study_, quantity);
+  return k && *k < variant.outputs.size() ? variant.outputs[*k].std_error : 0.0;
 }
 
 void Evaluator::check_constraints(Variant& variant) const {
@@ -236,8 +239,8 @@ void Evaluator::check_constraints(Variant& variant) const {
   variant.broken.clear();
   if (variant.failed) return;
   double sum = 0.0;
-  // All terms of the objective may use the same random numbers. Their errors are then correlated and are therefore
-  // added linearly.
+  // All terms of the objective may use common random numbers, so their errors are correlated. The errors are therefore
+  // added linearly and not as squares.
   double sum_of_errors = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double error_of_least = 0.0;
@@ -290,9 +293,7 @@ std::optional<double> Evaluator::slope(const PointValues& design, std::size_t pa
     if (!by) return std::nullopt;
     double sum = 0.0;
     for (const auto& [name, weight] : request_.objective.weights) {
-      const auto quantity = std::find_if(study_.quantities.begin(), study_.quantities.end(),
-                                         [&name = name](const auto& q) { return q->name() == name; });
-      const std::optional<double> term = (*quantity)->slope(candidate, by->first, cancel_);
+      const std::optional<double> term = quantity_named(study_, name)->slope(candidate, by->first, cancel_);
       if (!term) return std::nullopt;
       sum += weight * *term * by->second;
     }

@@ -29,10 +29,9 @@ class Evaluator {
   Variant evaluate(const PointValues& design, const ErrorLevel& level = {}) {
     return evaluate(std::vector<PointValues>{design}, level).front();
   }
-  /// Adds the designs of the store that this search has not evaluated.
+  /// Adds designs from the store that this search has not evaluated, for example designs of an earlier run.
   void add_stored();
-  /// Returns the most accurate result of an evaluated design. It is the mean of the results that were computed with the
-  /// smallest requested error.
+  /// Returns the most accurate result of an evaluated design: the mean of all results with the smallest target error.
   const Variant& most_accurate(const PointValues& design) const { return evaluated_[numbers_.at(key_of(design))]; }
   /// Adds designs that another search of this study has evaluated. They are not evaluated again.
   void add_evaluated(const std::vector<Variant>& seen);
@@ -46,7 +45,7 @@ class Evaluator {
   const std::string& budget_failure_reason() const { return budget_failure_reason_; }
   /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
-  /// Returns the standard error of a quantity.
+  /// Returns the standard error of a quantity for a design.
   double error_of(const Variant& variant, const std::string& quantity) const;
   /// Returns the derivative (slope) of the objective with respect to a parameter. Returns nothing if the derivative of
   /// a quantity of the objective cannot be computed.
@@ -68,14 +67,16 @@ class Evaluator {
   compute::ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  /// Index in `evaluated_` of each evaluated design. The key is a string that contains the parameter values.
+  /// Index of each evaluated design in `evaluated_`. The key is a string that contains the values of all parameters.
   std::map<std::string, std::size_t> numbers_;
-  /// Points of an earlier run. The key is a string that contains the parameter values and the level.
+  /// Results of an earlier run. The key is a string that contains the values of all parameters and the level of
+  /// accuracy.
   std::map<std::string, compute::StoredPoint> stored_;
-  std::map<ErrorLevel, Study> studies_;  ///< study for each level of accuracy
-  /// Results of each design at all levels. The key is a string that contains the parameter values.
+  std::map<ErrorLevel, Study> studies_;  ///< study adapted to each level of accuracy
+  /// Results of each design for each level of accuracy. The key is a string that contains the values of all parameters.
   std::map<std::string, std::map<ErrorLevel, Variant>> by_level_;
-  std::optional<double> best_value_;  ///< compared value of the best design, see OptimiseObserver::at_best()
+  /// cautious objective of the best reported design (Variant::cautious_objective())
+  std::optional<double> best_value_;
   std::vector<Variant> evaluated_;
   std::set<std::uint64_t> used_numbers_;  ///< numbers of the points in the store
   std::size_t budget_failures_ = 0;

@@ -11,7 +11,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Returns the fraction of the objective's variance that a quadratic function of one parameter explains.
+/// Returns the fraction of the variance of the objective that a quadratic function of a single parameter explains.
 double explained_variance(const Study& study, const Optimum& optimum, std::size_t parameter) {
   std::vector<FittedValue> values;
   double low = 0.0;

@@ -9,9 +9,9 @@
 
 namespace retrace::studies {
 
-/// Returns one or two parameters that explain most of the variation of the objective over all evaluated designs. The
-/// most important parameter comes first. Parameters whose values are not numbers are omitted. If the study has a single
-/// continuous parameter, a single parameter is returned.
+/// Returns the one or two parameters that explain most of the variation of the objective over all evaluated designs,
+/// the most important parameter first. Parameters whose values are not numbers are omitted. If the study has exactly
+/// one continuous parameter, only one parameter is returned.
 std::vector<std::size_t> important_parameters(const Study& study, const Optimum& optimum);
 
 }  // namespace retrace::studies

@@ -15,7 +15,8 @@ constexpr double kRidge = 1e-10;
 constexpr int kMaxModelEvaluations = 400;
 constexpr double kModelStep = 1e-6;
 
-/// Data of the functions that NLopt maximizes or constrains. NLopt passes this data to each function as a pointer.
+/// Polynomial and box of a function that NLopt maximizes or constrains. NLopt passes a pointer to this data to the
+/// function.
 struct ModelOfBox {
   const LocalModel* model = nullptr;
 };
@@ -54,8 +55,8 @@ LocalModel::LocalModel(const SearchBox& box, const std::vector<FittedValue>& val
   std::size_t count = coefficients(dimensions);
   if (values.size() < count) count = dimensions + 1;
   if (values.size() < count) count = 1;
-  // If the values have no errors, their weights are equal. The weight of a very accurate value is limited, because the
-  // model itself has an error.
+  // Values without error estimates have equal weights. The weight of a very accurate value is limited, because the
+  // polynomial itself deviates from the function.
   double max_error = 0.0;
   for (const FittedValue& value : values) max_error = std::max(max_error, value.estimate.std_error);
   const double floor = max_error > 0.0 ? 0.1 * max_error : 1.0;
@@ -120,7 +121,7 @@ std::optional<std::vector<double>> model_maximum(const SearchBox& box, const Loc
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception&) {
-      // NLopt throws this exception if rounding errors prevent progress. The last position is then used.
+      // NLopt throws this exception if rounding errors prevent progress. The last position of the search is then used.
     }
     for (std::size_t k = 0; k < dimensions; ++k) position[k] = std::clamp(position[k], lower[k], upper[k]);
     for (const LocalModel& limit : limits)
@@ -131,7 +132,7 @@ std::optional<std::vector<double>> model_maximum(const SearchBox& box, const Loc
   };
   look_from(from);
   look_from(box.centre);
-  // A quadratic model can have several maxima on the border of the box. The search therefore starts from several
+  // A quadratic polynomial can have several maxima on the border of the box. The search therefore starts from several
   // positions.
   for (std::size_t k = 0; k < dimensions; ++k)
     for (const double end : {lower[k], upper[k]}) {

@@ -12,27 +12,27 @@
 namespace retrace::studies {
 namespace {
 
-/// Half width of a confidence interval of 95 %, in standard errors.
+/// Half width of a confidence interval of 95 %, as a multiple of the standard error.
 constexpr double kInterval = 1.96;
-/// Maximum loss by rounding, as a multiple of the standard error of the difference between the compared points.
+/// Maximum loss of the objective by rounding, as a multiple of the standard error of the loss.
 constexpr double kRoundingErrors = 1.5;
-/// Initial SearchBox::radius for the fit of models, as a multiple of the distance between neighbouring points of the
-/// scan.
+/// Half of the edge length of the first box in which a model is fitted, for a single continuous parameter. The unit is
+/// the distance between neighbouring points of the scan.
 constexpr double kFirstBox = 3.5;
 constexpr double kSmallestBox = 1e-8;
-/// Maximum LocalModel::deviation() of a model that is regarded as accurate.
+/// A model is regarded as accurate if its LocalModel::deviation() is below this value.
 constexpr double kAdequate = 1.3;
-/// A box is made smaller only if the range of the objective in it exceeds this multiple of the standard error.
+/// The box shrinks only while the range of the objective inside the box exceeds this multiple of the standard error.
 constexpr double kBoxErrors = 6.0;
-/// Gain of the objective below which a search without random errors ends, as a fraction of the objective.
+/// A search without random errors ends if a step improves the objective by less than this fraction.
 constexpr double kSmallestGain = 1e-9;
-/// Maximum number of points of nearest_of().
+/// Maximum number of points that nearest_of() returns.
 constexpr std::size_t kMaxPeaks = 6;
-/// Maximum number of scan points per combination of discrete values that are observed again with a smaller error.
+/// Maximum number of scan points that are observed again with a smaller error, for each combination of discrete values.
 constexpr std::size_t kMaxContenders = 5;
-/// Maximum number of points with rounder values that are observed.
+/// Maximum number of points with fewer digits that are observed.
 constexpr std::size_t kMaxRounder = 6;
-/// Maximum number of points with rounder values that are observed with the smallest error.
+/// Maximum number of points with fewer digits that are observed with the smallest error.
 constexpr std::size_t kMaxCompared = 3;
 
 double square(double x) {
@@ -45,7 +45,7 @@ double distance(const SearchPoint& a, const SearchPoint& b) {
   return max;
 }
 
-/// Search for the maximum of a function. It stores all observations.
+/// Implementation of search_with_noise(). It stores all observations.
 class NoisySearch {
  public:
   NoisySearch(SearchedFunction& function, const NoisySearchSettings& settings)
@@ -55,8 +55,8 @@ class NoisySearch {
     std::vector<SearchPoint> all;
     for (const auto& points : scan) all.insert(all.end(), points.begin(), points.end());
     observe(all, {settings_.scan_scale, 0});
-    // Each start is the best scan point of a combination of discrete values. refine() first repeats the scan points
-    // that the errors do not distinguish from this point.
+    // Each combination of discrete values has one start, which is its best scan point. refine() first observes again
+    // all scan points of the combination whose difference from the start is within the errors.
     for (const SearchPoint& start : starts(scan)) refine(start);
     NoisyOptimum optimum;
     std::optional<SearchPoint> best = compare(finalists());
@@ -72,7 +72,7 @@ class NoisySearch {
   }
 
  private:
-  /// Observes points at a level of accuracy. Points that have been observed at this level are skipped.
+  /// Observes points at a level of accuracy. Skips points that were already observed at this level.
   void observe(const std::vector<SearchPoint>& points, const ErrorLevel& level) {
     std::vector<SearchPoint> open;
     std::set<SearchPoint> added;
@@ -89,7 +89,7 @@ class NoisySearch {
     }
   }
 
-  /// Returns the most accurate observations of a point: all replicates with its smallest ErrorLevel::scale.
+  /// Returns the most accurate observations of a point, which are all replicates with the smallest ErrorLevel::scale.
   std::vector<const Observation*> best_seen(const SearchPoint& point) const {
     std::vector<const Observation*> found;
     const auto at = known_.find(point);
@@ -99,7 +99,7 @@ class NoisySearch {
     return found;
   }
 
-  /// Returns the mean of the objective over the most accurate observations of a point.
+  /// Returns the mean objective of the most accurate observations of a point.
   std::optional<Estimate> estimate(const SearchPoint& point) const {
     Estimate mean;
     const std::vector<const Observation*> seen = best_seen(point);
@@ -113,7 +113,7 @@ class NoisySearch {
     return Estimate{mean.value / count, std::sqrt(mean.std_error) / count};
   }
 
-  /// Returns the mean of Observation::excess for one limit over the most accurate observations of a point.
+  /// Returns the mean excess over one limit (Observation::excess) of the most accurate observations of a point.
   Estimate excess(const SearchPoint& point, std::size_t limit) const {
     Estimate mean;
     const std::vector<const Observation*> seen = best_seen(point);
@@ -134,8 +134,8 @@ class NoisySearch {
     return true;
   }
 
-  /// Returns the value for the ranking of points with different errors: the estimate minus its standard error. A point
-  /// is therefore not preferred only because its error is large.
+  /// Returns the estimated objective minus its standard error. Points are ranked by this value, because a large random
+  /// error could otherwise make a point look best.
   double cautious_value(const SearchPoint& point) const {
     const Estimate value = *estimate(point);
     return value.value - value.std_error;
@@ -155,7 +155,7 @@ class NoisySearch {
     return best;
   }
 
-  /// Returns the best scan point of each of the best combinations of discrete values.
+  /// Returns the best scan point of every combination of discrete values, but only for the best few combinations.
   std::vector<SearchPoint> starts(const std::vector<std::vector<SearchPoint>>& scan) const {
     std::vector<SearchPoint> found;
     for (const auto& points : scan)
@@ -168,7 +168,7 @@ class NoisySearch {
 
   ErrorLevel refinement_level() const { return {has_noise_ ? settings_.refinement_scale : settings_.scan_scale, 0}; }
 
-  /// Returns all observed points of a combination in a box that have an objective.
+  /// Returns the observed points of a combination that are inside a box and have an objective.
   std::vector<SearchPoint> points_in(std::size_t combination, const SearchBox& box) const {
     std::vector<SearchPoint> found;
     for (const auto& [point, seen] : known_)
@@ -176,7 +176,8 @@ class NoisySearch {
     return found;
   }
 
-  /// Observes points along the axes and diagonals of a box until the box has enough points for a quadratic model.
+  /// Observes additional points on the axes and diagonals of a box until there are enough points to fit a quadratic
+  /// model.
   void fill(std::size_t combination, const SearchBox& box) {
     const std::size_t dimensions = box.centre.size();
     const std::size_t needed = LocalModel::coefficients(dimensions) + (has_noise_ ? dimensions : 0);
@@ -187,7 +188,7 @@ class NoisySearch {
       SearchPoint point{combination, box.centre};
       for (std::size_t k = 0; k < dimensions; ++k) {
         const double at = box.centre[k] + steps[k] * box.radius;
-        // If a step leaves the interval, the opposite step is used.
+        // If a step leaves the interval of the parameter, the step in the opposite direction is used.
         point.fractions[k] = at < 0.0 || at > 1.0 ? std::clamp(box.centre[k] - steps[k] * box.radius, 0.0, 1.0) : at;
       }
       if (function_.is_allowed(point) || dimensions > 1) added.push_back(point);
@@ -214,8 +215,8 @@ class NoisySearch {
     return {box, values};
   }
 
-  /// Returns one model for each limit. The model approximates the amount by which the limit is exceeded. Points at
-  /// which the limited quantity has no value are omitted.
+  /// Returns one model for each limit. The model approximates the excess over this limit (Observation::excess). Points
+  /// at which the limited quantity has no value are omitted.
   std::vector<LocalModel> limit_models(const SearchBox& box, const std::vector<SearchPoint>& points) const {
     std::vector<LocalModel> models;
     for (std::size_t k = 0; k < limits(); ++k) {
@@ -228,7 +229,8 @@ class NoisySearch {
     return models;
   }
 
-  /// Returns the allowed point that is nearest to `point` on the line from `from` to `point`.
+  /// Moves `point` towards `from` until it is allowed. Returns the allowed point on this line that is nearest to
+  /// `point`.
   /// \pre `from` is allowed
   SearchPoint pulled_back(const SearchPoint& from, const SearchPoint& point) const {
     if (function_.is_allowed(point)) return point;
@@ -247,13 +249,13 @@ class NoisySearch {
     return nearest;
   }
 
-  /// Improves the continuous parameters of a point by repeated fits of a quadratic model.
+  /// Improves the continuous parameters of a point by fitting quadratic models repeatedly.
   void refine(const SearchPoint& start) {
     if (start.fractions.empty()) return;
     SearchPoint centre = best_peak(best_contender(start));
     const auto dimensions = static_cast<double>(centre.fractions.size());
-    // In one dimension, the box contains the nearest points of the scan. In several dimensions, scan points are farther
-    // apart, so the box is larger.
+    // With one continuous parameter, the first box contains the nearest points of the scan. With several parameters,
+    // the scan points are farther apart, so a larger box is necessary.
     double radius =
         dimensions > 1.0 ? 0.5 * std::pow(settings_.spacing * 12.0, 1.0 / dimensions) : kFirstBox * settings_.spacing;
     int quiet = 0;
@@ -269,7 +271,7 @@ class NoisySearch {
       observe({proposal}, refinement_level());
       const SearchPoint before = centre;
       const double noise = mean_error(points);
-      // If a model fits all points within their errors, the model is more accurate than a single observation.
+      // A model that agrees with all points within their errors is more accurate than a single observation.
       const bool is_adequate = has_noise_ && model.deviation() < kAdequate;
       if (is_adequate) last_model_.emplace(AdequateModel{box, model, centre.combination});
       if (is_feasible(proposal)) {
@@ -283,8 +285,8 @@ class NoisySearch {
       const double spread = range_of(model, box);
       quiet = std::abs(gain) < tolerance(centre) && (is_adequate || moved < 0.1 * radius) ? quiet + 1 : 0;
       if (quiet >= (is_adequate && iteration > 0 ? 1 : 2) || (iteration > 0 && spread < tolerance(centre))) break;
-      // In a very small box, all differences would be below the errors. The box is therefore made smaller only while
-      // the differences exceed the errors.
+      // In a very small box, the errors would exceed all differences. The box therefore shrinks only while the
+      // differences are larger than the errors.
       if ((moved < 0.7 * radius || centre == before) && spread > kBoxErrors * noise) radius *= has_noise_ ? 0.6 : 0.35;
     }
   }
@@ -296,8 +298,8 @@ class NoisySearch {
     return std::sqrt(squares / static_cast<double>(points.size()));
   }
 
-  /// Evaluates a model at the centre of a box and at the ends of the box's axes. Returns the difference between the
-  /// largest and the smallest value.
+  /// Returns the difference between the largest and the smallest value of a model at the centre of a box and on its
+  /// axes.
   static double range_of(const LocalModel& model, const SearchBox& box) {
     double low = model.at(box.centre);
     double high = low;
@@ -311,18 +313,18 @@ class NoisySearch {
     return high - low;
   }
 
-  /// Returns the smallest difference of the objective that the search distinguishes.
+  /// Returns the smallest difference of the objective that the search takes into account.
   double tolerance(const SearchPoint& point) const {
     const Estimate here = *estimate(point);
     if (!has_noise_) return kSmallestGain * std::abs(here.value);
-    // The tolerance is the error of an observation with the scale 1. The error of the refinement would be too large,
-    // because the last comparison distinguishes smaller differences.
+    // The tolerance is the error of an observation with ErrorLevel::scale 1. The larger error of the refinement would
+    // end the search too early, because the last comparison resolves smaller differences.
     const double scale = known_.at(point).begin()->first.scale;
     return here.std_error / scale;
   }
 
-  /// Observes the scan points whose difference from `start` is below the errors of the scan. `start` is the best scan
-  /// point of its combination of discrete values. Returns the best point after these observations.
+  /// Observes again the scan points whose difference from `start` is within the errors, and returns the best point.
+  /// `start` is the best scan point of its combination of discrete values.
   SearchPoint best_contender(const SearchPoint& start) {
     std::vector<SearchPoint> contenders;
     const Estimate best = *estimate(start);
@@ -340,8 +342,8 @@ class NoisySearch {
     return best_of(contenders).value_or(start);
   }
 
-  /// Observes the points near `start` at which the objective may have a peak. Returns the best point, which may be
-  /// `start`.
+  /// Observes points near `start` at which the objective may have a peak. Returns the best point, which may be `start`
+  /// itself.
   SearchPoint best_peak(const SearchPoint& start) {
     std::vector<SearchPoint> peaks = function_.peaks_near(start, kPeakBox * settings_.spacing);
     std::erase_if(peaks, [&](const SearchPoint& peak) { return !function_.is_allowed(peak); });
@@ -351,7 +353,7 @@ class NoisySearch {
     return best_of(peaks).value_or(start);
   }
 
-  /// Returns the points for the last comparison: the points with the best observed values, and the last maximum of a
+  /// Returns the points for the last comparison: the points with the best observed values, and the maximum of the last
   /// model.
   std::vector<SearchPoint> finalists() const {
     std::vector<SearchPoint> ranked = feasible_points();
@@ -368,7 +370,7 @@ class NoisySearch {
     for (const SearchPoint& point : ranked) {
       const Estimate best = *estimate(ranked.front());
       const Estimate here = *estimate(point);
-      // Points that are certainly worse than the best point are omitted.
+      // Points that are significantly worse than the best point are omitted.
       if (best.value - here.value < kInterval * std::hypot(best.std_error, here.std_error)) add(point);
     }
     return chosen;
@@ -380,15 +382,15 @@ class NoisySearch {
       observe(points, {settings_.last_scale, replicate});
   }
 
-  /// Observes points with the smallest error, compares the results, and returns the best point.
+  /// Observes points at the smallest error of the search. Returns the best point that satisfies all limits.
   std::optional<SearchPoint> compare(const std::vector<SearchPoint>& points) {
     observe_at_last(points);
     std::optional<SearchPoint> best;
     for (const SearchPoint& point : points)
       if (is_feasible(point) && (!best || estimate(point)->value > estimate(*best)->value)) best = point;
     if (best || points.empty()) return best;
-    // With their smaller errors, none of the points satisfies the limits. The next candidates are therefore observed
-    // one by one.
+    // None of the points satisfies the limits when it is observed with smaller errors. The next candidates are
+    // therefore observed one by one.
     std::vector<SearchPoint> others = feasible_points();
     std::ranges::stable_sort(
         others, [&](const SearchPoint& a, const SearchPoint& b) { return cautious_value(a) > cautious_value(b); });
@@ -410,8 +412,7 @@ class NoisySearch {
     return paired_difference(of_a, of_b);
   }
 
-  /// Returns true if an accurate model predicts that a point is worse than `best`, and the predicted loss exceeds the
-  /// error.
+  /// Returns true if an accurate model predicts that a point is worse than `best` by more than the error.
   bool is_predicted_worse(const SearchPoint& point, const SearchPoint& best) const {
     if (!last_model_ || last_model_->combination != point.combination || !last_model_->box.contains(point.fractions) ||
         !last_model_->box.contains(best.fractions))
@@ -420,7 +421,8 @@ class NoisySearch {
     return loss > kInterval * std::sqrt(2.0) * estimate(best)->std_error;
   }
 
-  /// Returns the point with the fewest digits whose objective cannot be distinguished from the objective of `best`.
+  /// Returns a point with fewer digits whose objective does not differ significantly from the objective of `best`.
+  /// Returns `best` if there is no such point.
   SearchPoint rounded(const SearchPoint& best) {
     if (best.fractions.empty()) return best;
     std::size_t observed = 0;
@@ -448,7 +450,9 @@ class NoisySearch {
     return best;
   }
 
-  /// \param best point before rounding
+  /// Returns the resolution of the result (NoisyOptimum::resolution).
+  /// \param precise best point before rounding
+  /// \param chosen best point after rounding
   double resolution(const SearchPoint& precise, const SearchPoint& chosen) const {
     if (!has_noise_) return 0.0;
     const Estimate here = *estimate(chosen);
@@ -458,16 +462,16 @@ class NoisySearch {
 
   SearchedFunction& function_;
   const NoisySearchSettings& settings_;
-  /// Observations of each point. The most accurate observation comes first.
+  /// Observations of each point, ordered by their accuracy. The most accurate observation comes first.
   std::map<SearchPoint, std::map<ErrorLevel, Observation>> known_;
-  /// Model that fits all points in a box within their errors.
+  /// Model whose deviations from all points in a box are within the errors.
   struct AdequateModel {
     SearchBox box;
     LocalModel model;
     std::size_t combination = 0;
   };
   std::optional<AdequateModel> last_model_;
-  std::vector<SearchPoint> proposals_;  ///< points at which a fitted model had its maximum, in the order of the search
+  std::vector<SearchPoint> proposals_;  ///< maxima of the fitted models, in the order of the search
   bool has_noise_ = false;
   std::size_t observations_ = 0;
 };
@@ -493,11 +497,10 @@ Estimate paired_difference(const std::vector<Estimate>& a, const std::vector<Est
   if (a.size() < 3) return difference;
   double squares = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) squares += square(a[k].value - b[k].value - difference.value);
-  // The standard deviation of a few differences is uncertain. Student's t distribution takes this uncertainty into
-  // account.
+  // The standard deviation of a few differences is uncertain. Student's t distribution accounts for this uncertainty.
   const double student = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) / kInterval;
   const double paired = student * std::sqrt(squares / (count - 1.0) / count);
-  // With common random numbers, a difference is at least as accurate as a difference of independent values.
+  // With common random numbers, a difference is at least as accurate as a difference between independent values.
   difference.std_error = std::min(difference.std_error, paired);
   return difference;
 }

@@ -21,7 +21,7 @@ constexpr double kNearlyAsGood = 0.01;
 /// Minimum gain for which a cheaper design is proposed. It is measured on the axis of the Pareto front, as a fraction
 /// of the best design's value on this axis.
 constexpr double kWorthIt = 1e-3;
-/// Settings that the search without random errors shares with the search with random errors.
+/// Settings of a search with random errors. Searches without random errors use some of these settings, too.
 constexpr NoisySearchSettings kSearch;
 constexpr const char* kStoreKind = "retrace.optimum/2";
 constexpr const char* kLevelInputs[] = {"error_scale", "replicate"};
@@ -45,7 +45,7 @@ bool is_better(const Variant& a, const Variant& b) {
   return *a.objective > *b.objective;
 }
 
-/// Returns the target error of the first scan, as a multiple of the target error of the study.
+/// Returns ErrorLevel::scale of the first scan: its target error as a multiple of the target error of the study.
 double scan_scale(const Study& study, const OptimiseRequest& request) {
   return request.has_levels && may_be_noisy(study) ? kSearch.scan_scale : 1.0;
 }
@@ -102,7 +102,7 @@ class DesignSearch {
     return found;
   }
 
-  /// Returns true if the search compares designs whose quantities have random errors.
+  /// Returns true if the compared designs have random errors.
   bool is_noisy() const { return is_noisy_; }
 
   std::optional<Variant> best_seen() const {
@@ -160,7 +160,7 @@ class DesignSearch {
     return best ? std::optional(rounded(*best)) : std::nullopt;
   }
 
-  /// Returns the index of the combination of discrete values that a design has.
+  /// Returns the index of the combination of discrete values to which a design belongs.
   std::size_t combination_of(const PointValues& design) const {
     const auto is_same = [&](const PointValues& combination) {
       for (std::size_t k = 0; k < design.size(); ++k)
@@ -170,8 +170,8 @@ class DesignSearch {
     return static_cast<std::size_t>(std::ranges::find_if(scan_.combinations(), is_same) - scan_.combinations().begin());
   }
 
-  /// Evaluates designs near `start` whose element sizes are such that a whole number of elements fills the part.
-  /// Returns the best design, which may be `start`.
+  /// Evaluates designs near `start` with sizes for which a whole number of elements fills the part. Returns the best
+  /// design, which may be `start` itself.
   Variant best_peak(std::size_t combination, const Variant& start) {
     const SearchPoint at{combination, scan_.fractions_of(start.values)};
     std::vector<PointValues> designs;
@@ -205,8 +205,7 @@ class DesignSearch {
     }
   }
 
-  /// Returns the design after rounding its parameters. The rounded values have the fewest digits that cause no
-  /// significant loss of the objective.
+  /// Rounds the parameters of a design to as few digits as possible without a significant loss of the objective.
   Variant rounded(const Variant& best) {
     if (continuous_.empty() || !request_.is_rounded) return best;
     const SearchPoint at{combination_of(best.values), scan_.fractions_of(best.values)};
@@ -242,7 +241,8 @@ class DesignSearch {
   DesignFunction function_;
   const std::vector<std::size_t>& continuous_;
   bool is_noisy_ = false;
-  double neighbour_scale_ = 1.0;  ///< ErrorLevel::scale for the neighbours of the best design
+  double neighbour_scale_ =
+      1.0;  ///< factor on the target errors of the neighbours of the best design (ErrorLevel::scale)
 };
 
 /// Returns a text that explains why a design was not chosen.
@@ -301,7 +301,8 @@ std::optional<std::vector<double>> merits(const Variant& variant, const Optimise
   for (const FrontAxis& axis : request.front) {
     const std::optional<double> value = evaluator.value(variant, axis.quantity);
     if (!value) return std::nullopt;
-    // The subtraction prevents a value with a large error from dominating other values only because of its error.
+    // Two standard errors are subtracted, so that a design is not on the Pareto front only because of a large random
+    // error.
     const double error = evaluator.error_of(variant, axis.quantity);
     merits.push_back((axis.is_maximized ? *value : -*value) - 2.0 * error);
   }
@@ -318,7 +319,8 @@ bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
   return better;
 }
 
-/// Returns the feasible designs that no other design dominates. The best design on the first axis comes first.
+/// Returns the Pareto front: the feasible designs that no other design dominates. The design that is best on the first
+/// axis comes first.
 std::vector<Variant> pareto_front(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<std::pair<std::vector<double>, const Variant*>> open;
   for (const Variant& variant : evaluator.evaluated()) {
@@ -398,7 +400,7 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
   return text.empty() ? "the objective has no value for any design" : text + ": no design satisfies all constraints";
 }
 
-/// Adds the results that need no further computation: the Pareto front and the designs that were not chosen.
+/// Adds the results that need no further evaluation of designs: the Pareto front and the designs that were not chosen.
 void add_results(const OptimiseRequest& request, const Evaluator& evaluator, std::vector<Rejected> neighbours,
                  Optimum& optimum) {
   optimum.rejected = excluded_designs(request, evaluator, *optimum.best);
@@ -431,7 +433,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
     optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));
 }
 
-/// Completes the result of an interrupted search. The best design is chosen from the designs that were computed before
+/// Completes the result of an interrupted search. The best design is chosen from all designs that were evaluated before
 /// the interruption.
 void finish_early(const OptimiseRequest& request, Evaluator& evaluator, Optimum& optimum) {
   optimum = {};
@@ -465,7 +467,6 @@ Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& 
     finish_early(request, evaluator, optimum);
   }
   optimum.designs = evaluator.evaluated();
-  optimum.evaluations = evaluator.evaluated().size();
   optimum.budget_failures = evaluator.budget_failures();
   optimum.budget_failure_reason = evaluator.budget_failure_reason();
   return optimum;

@@ -38,8 +38,10 @@ struct OptimiseRequest {
   std::size_t scan = 65;               ///< number of designs in the first scan, for each combination of discrete values
   std::vector<std::string> band_keys;  ///< keys whose tolerance bands are requested
   double band_loss = 0.01;             ///< relative loss of the objective at which a tolerance band ends
-  bool is_rounded = true;              ///< true: the parameters of the result are rounded to values with few digits
-  /// True: designs are computed at several levels of accuracy, and the store contains the level of each stored point.
+  /// true: the parameters of the best design are rounded to values with few digits
+  bool is_rounded = true;
+  /// True: designs are evaluated at several levels of accuracy (ErrorLevel). The store then contains the level of each
+  /// result.
   bool has_levels = true;
 };
 
@@ -54,7 +56,7 @@ struct Variant {
   double objective_error = 0.0;     ///< standard error of the objective
   std::vector<std::size_t> broken;  ///< indices of the violated constraints
   bool feasible() const { return objective.has_value() && broken.empty(); }
-  /// Returns the value by which designs with random errors are compared: the objective minus twice its standard error.
+  /// Returns the objective minus twice its standard error. Designs with random errors are compared by this value.
   /// \pre the design has an objective
   double cautious_objective() const { return *objective - 2.0 * objective_error; }
 };
@@ -89,10 +91,10 @@ struct Optimum {
   /// Effect of each constraint, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< Pareto front: feasible designs that no other design dominates
-  /// All evaluated designs, with their most accurate results, in the order of their first evaluation.
+  /// All evaluated designs in the order of their first evaluation. Each design has its most accurate results.
   std::vector<Variant> designs;
-  /// Upper limit of the amount by which another design near the evaluated designs may be better than `best`, with a
-  /// confidence of 95 %. It is 0 if the objective has no random error.
+  /// Another design near the evaluated designs may be better than `best` by up to this amount, with a confidence of 95
+  /// %. It is 0 if the objective has no random error.
   double resolution = 0.0;
   std::vector<Rejected> rejected;
   /// Cheaper alternative to the best design. Among the designs of the Pareto front that lose at most 1 % of the
@@ -100,7 +102,6 @@ struct Optimum {
   std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes", "no slopes" or "paired comparison"
-  std::size_t evaluations = 0;
   std::size_t budget_failures =
       0;  ///< number of designs that failed because the budget of memory or beams was exhausted
   std::string budget_failure_reason;  ///< error message of the first design that `budget_failures` counts
@@ -112,9 +113,8 @@ class OptimiseObserver {
  public:
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
-  /// Reports a feasible design that is better than all designs that were reported before. The value by which designs
-  /// are compared is the objective minus twice its standard error. This function is never called by two threads at the
-  /// same time.
+  /// Reports a feasible design that is better than all previously reported designs. Designs are compared by
+  /// Variant::cautious_objective(). Two threads never call this function at the same time.
   virtual void at_best(const Variant& best) { static_cast<void>(best); }
   /// Reports the progress of a group of designs that are evaluated together.
   /// \param fraction finished fraction of the group; 0 when the group begins
@@ -132,11 +132,14 @@ compute::StoreLayout optimise_layout(const Study& study);
 /// \throw InputError for too many combinations of discrete values
 Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 
-/// Searches for the best design. The search scans every combination of discrete values and a set of continuous values.
-/// For a single continuous parameter, limits of feasibility are then located by bisection. The best designs are refined
-/// within bounds and constraints. Finally, parameters are rounded if the objective does not decrease significantly. If
-/// quantities have random errors, search_with_noise() is used. Designs that are already in the store are not computed
-/// again, and the result is the same. The result of an interrupted search contains all designs of the store.
+/// Searches for the best design. The search has these steps:
+/// 1. A scan evaluates every combination of discrete values, each with a set of values of the continuous parameters.
+/// 2. For a single continuous parameter, bisection locates the values at which a constraint begins to be violated.
+/// 3. The best designs are refined, within the intervals of the parameters and the constraints.
+/// 4. The parameters are rounded if the objective does not decrease significantly.
+/// If quantities have random errors, search_with_noise() replaces steps 2 to 4. Designs in the store are not computed
+/// again, and the result does not depend on whether they were stored. After an interruption, the result contains all
+/// designs of the store.
 /// \throw OutputError if a result cannot be stored
 Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
                  OptimiseObserver* observer, const Cancellation* cancel);

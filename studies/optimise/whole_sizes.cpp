@@ -9,12 +9,12 @@
 namespace retrace::studies {
 namespace {
 
-/// Maximum deviation of the number of elements from a whole number. The layout of arrays uses the same tolerance.
+/// Maximum deviation of the number of elements from a whole number. Arrays are laid out with the same tolerance.
 constexpr double kWhole = 1e-9;
-/// Maximum number of sizes of elements that fill one length of the part with a whole number of elements. A length with
-/// more such sizes does not restrict the search.
+/// Maximum number of element sizes that divide one length of the part into a whole number of elements. If a length has
+/// more such sizes, it does not influence the choice of the element size.
 constexpr double kMaxSizes = 1000.0;
-/// Smallest step between round values, as a fraction of the value.
+/// Smallest step between values with few digits, as a fraction of the value.
 constexpr double kSmallestStepFraction = 1e-9;
 
 }  // namespace
@@ -66,7 +66,7 @@ std::vector<double> round_values(double value, double low, double high, const Wh
   std::vector<double> values;
   if (!(high > low)) return values;
   const double size = std::max(std::abs(low), std::abs(high));
-  // The steps decrease. The first power of ten is at least as large as the values.
+  // The steps decrease from a power of ten that is at least as large as all values.
   const int first = static_cast<int>(std::ceil(std::log10(size)));
   for (int exponent = first; std::pow(10.0, exponent) > kSmallestStepFraction * size; --exponent)
     for (const double digit : {5.0, 2.0, 1.0}) {

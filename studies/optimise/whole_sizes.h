@@ -1,6 +1,6 @@
 #pragma once
 
-// Sizes of prisms for which a whole number of elements fills the part. Internal to studies/optimise.
+// Sizes of prisms with which a whole number of elements fills the part. Internal to studies/optimise.
 
 #include <vector>
 
@@ -9,26 +9,25 @@
 
 namespace retrace::studies {
 
-/// Element sizes for which a whole number of elements fills the length of a part. The size is a parameter of a study.
+/// Element sizes with which a whole number of elements fills a length of the part. The size is a parameter of a study.
 class WholeSizes {
  public:
   WholeSizes() = default;
-  /// Determines the lengths that elements of this size fill: along x for `element.base_mm`, along y for
-  /// `element.width_mm`. There are no such lengths for infinite arrays, for elements other than prisms, and for parts
-  /// on a substrate.
+  /// Determines the lengths that elements fill: the length along x for `element.base_mm`, the length along y for
+  /// `element.width_mm`. Infinite arrays, elements other than prisms, and parts on a substrate have no such lengths.
   WholeSizes(const design::Design& design, const Parameter& parameter);
 
   bool is_empty() const { return lengths_.empty(); }
-  /// Returns true if a whole number of elements of this size fills all lengths of the part.
+  /// Returns true if a whole number of elements of the given size fills each length of the part.
   bool is_whole(double size_mm) const;
-  /// Returns the sizes from `low_mm` to `high_mm` with which whole numbers of elements fill all lengths. If there are
-  /// no such sizes, returns the sizes that fill only one of the lengths.
+  /// Returns the sizes from `low_mm` to `high_mm` with which whole numbers of elements fill all lengths. If no size
+  /// fills all lengths, returns the sizes that fill one length.
   std::vector<double> between(double low_mm, double high_mm) const;
 
  private:
-  /// Length that elements and the gaps between them fill.
+  /// Length of the part that elements and the gaps between them fill.
   struct Length {
-    double room_mm = 0.0;  ///< total length of the elements, each with one gap
+    double room_mm = 0.0;  ///< total length of all elements, where each element includes one gap
     double gap_mm = 0.0;
   };
   static bool divides(const Length& length, double size_mm);
@@ -36,10 +35,11 @@ class WholeSizes {
   std::vector<Length> lengths_;
 };
 
-/// Returns values near `value` with few digits: multiples of 1, 2 and 5 times powers of ten. Values with fewer digits
-/// come first. Among equally round values, sizes for which a whole number of elements fills the part come first.
-/// \param low minimum of the values
-/// \param high maximum of the values
+/// Returns values near `value` with few digits, which are multiples of 1, 2 or 5 times a power of ten. Values with
+/// fewer digits come first. Of two values with equally many digits, the value with which a whole number of elements
+/// fills the part comes first.
+/// \param low smallest allowed value
+/// \param high largest allowed value
 std::vector<double> round_values(double value, double low, double high, const WholeSizes& whole);
 
 }  // namespace retrace::studies

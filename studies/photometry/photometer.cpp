@@ -10,6 +10,7 @@
 #include "design/io/design_reader.h"
 #include "design/light_symmetry.h"
 #include "design/part_of_design.h"
+#include "geometry/elements/ruled_pattern.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
 #include "raytrace/observers/coefficients.h"
@@ -95,7 +96,8 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 /// \param model null if it is not known yet; the surface is then assumed to be exact
 void allow_tangent_planes(const design::Design& design, const design::OpticalModel* model,
                           const PhotometrySettings& request, raytrace::EngineFacts& facts) {
-  // A computation with tangent planes would omit the chamfer and the mount of a single element.
+  // Tangent planes are not used for a round cube corner with a chamfer or a mount, because the traced excerpt would not
+  // contain them.
   const auto* const round =
       design.elements() != nullptr ? std::get_if<geometry::RoundCube>(&design.part().element) : nullptr;
   if (round != nullptr && (round->chamfer_mm > 0.0 || round->mount_diameter_mm > 0.0)) return;
@@ -114,6 +116,8 @@ double width_of_cells_mm(const design::Design& design) {
     return std::min(prism->base_mm, prism->width_mm);
   if (const auto* cube = std::get_if<geometry::HexagonalCube>(&design.part().element)) return cube->aperture_mm;
   if (const auto* cube = std::get_if<geometry::RoundCube>(&design.part().element)) return cube->diameter_mm;
+  if (const auto* ruled = std::get_if<geometry::RuledCells>(&design.part().element))
+    return geometry::aperture_of_mean_cell_mm(*ruled->pattern);
   return std::get<geometry::TriangularCube>(design.part().element).aperture_mm;
 }
 

@@ -107,6 +107,8 @@ class Photometer {
   /// Returns advice for reducing standard errors, for messages.
   std::string remedy_for_noise() const { return is_exact() ? "give a lower cut-off" : "give more samples"; }
   bool has_diffraction() const { return is_exact() && request_.diffraction; }
+  /// Returns true if the fields of different cells are added (design::CellSpread).
+  bool adds_fields_of_cells() const { return has_diffraction() && design_.cell_spread() != nullptr; }
   /// Returns the reason why the readings do not include diffraction.
   /// \pre the readings do not include diffraction
   NoDiffraction why_undiffracted() const;
@@ -166,6 +168,10 @@ class Photometer {
     double path_length_mm = 0.0;                 ///< path length of returned light inside the part
     std::size_t parts = 1;                       ///< number of spans of the spectrum, each with two wavelengths
 
+    /// Returns the transmittance of the body for a path of `path_length_mm`.
+    double transmittance(double wavelength_nm) const;
+    /// Returns the spectral power that remains after absorption in the body, per nm.
+    materials::SpectralCurve remaining_power() const;
     /// Returns the traced wavelengths and their weights. The weights do not include the absorption in the body.
     /// \param knees_nm wavelengths at which total reflection begins or ends at a facet, in ascending order
     materials::Spectrum light(const std::vector<double>& knees_nm) const;
@@ -197,6 +203,9 @@ class Photometer {
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
   raytrace::FarFieldPolicy far_field_policy(const design::SpectralOptics& light, const Cancellation* cancel) const;
+  /// Returns the parameters with which the fields of different cells are added, at one wavelength. Returns nothing if
+  /// their intensities are added.
+  std::optional<raytrace::CellInterference> cell_interference(std::size_t wavelength) const;
   /// Returns the settings of the beam tracer for one wavelength.
   /// \param coarseness factor by which the cut-off power is multiplied
   raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;

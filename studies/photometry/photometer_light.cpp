@@ -8,9 +8,12 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
+#include "design/cell_interference_of_design.h"
+#include "design/light_and_index.h"
 #include "design/total_reflection.h"
 #include "materials/io/material_library.h"
 #include "materials/knee_rule.h"
+#include "materials/spectral_bands.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -103,19 +106,25 @@ std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec
 
 }  // namespace
 
+double Photometer::Lamp::transmittance(double wavelength_nm) const {
+  return absorption_per_mm.values.empty() ? 1.0 : std::exp(-absorption_per_mm.at(wavelength_nm) * path_length_mm);
+}
+
+materials::SpectralCurve Photometer::Lamp::remaining_power() const {
+  materials::SpectralCurve left = power;
+  for (std::size_t k = 0; k < left.values.size(); ++k) left.values[k] *= transmittance(left.wavelengths_nm[k]);
+  return left;
+}
+
 /// Chooses the wavelengths by the flux that remains after absorption in the body, because a dyed body may absorb most
 /// of the lamp's light. The weights exclude this absorption because the tracer applies it.
 materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm) const {
-  const auto transmittance = [&](double w) {
-    return absorption_per_mm.values.empty() ? 1.0 : std::exp(-absorption_per_mm.at(w) * path_length_mm);
-  };
-  materials::SpectralCurve left = power;
+  const materials::SpectralCurve left = remaining_power();
   double before = 0.0;
   double behind = 0.0;
   for (std::size_t k = 0; k < left.values.size(); ++k) {
     const double w = left.wavelengths_nm[k];
-    const double flux = left.values[k] * response.at(w);
-    left.values[k] *= transmittance(w);
+    const double flux = power.values[k] * response.at(w);
     before += flux;
     behind += flux * transmittance(w);
   }
@@ -125,6 +134,19 @@ materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm)
   for (std::size_t k = 0; k < light.size(); ++k)
     light.weights[k] *= behind / before / transmittance(light.wavelengths_nm[k]);
   return light;
+}
+
+std::optional<raytrace::CellInterference> Photometer::cell_interference(std::size_t wavelength) const {
+  const design::CellSpread* const spread = design_.cell_spread();
+  if (spread == nullptr) return std::nullopt;
+  raytrace::CellInterference cells = design::interference_of(*spread, model_.spectral[wavelength].optics.index);
+  const bool has_band = lamp_ || (design_.light.spectrum() != nullptr &&
+                                  design_.light.spectrum()->kind != design::LightSpectrum::Kind::lines);
+  if (!has_band) return cells;
+  const materials::Spectrum flux =
+      lamp_ ? materials::resolved_spectrum(lamp_->remaining_power(), &lamp_->response) : design::flux_of(design_);
+  cells.band_nm = materials::spectral_bands({wavelengths_nm(), weights_}, flux)[wavelength];
+  return cells;
 }
 
 std::map<std::vector<double>, std::vector<std::size_t>> Photometer::settings_by_knees(

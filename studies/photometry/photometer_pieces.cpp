@@ -176,7 +176,9 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   const design::SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::SourceAngles source = raytrace::source_angles(to_source);
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
-  raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
+  raytrace::FarFieldPolicy far_field = far_field_policy(light, cancel);
+  far_field.interference = cell_interference(wavelength);
+  raytrace::FarFieldCollector collector(model_.part, illumination, far_field);
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   FarFieldMemory memory;
   Traced traced;

@@ -30,8 +30,9 @@ constexpr std::size_t kMinSamples = 24;
 constexpr double kAnglesOfMap = 8.0;
 // Maximum number of observation angles for which the full number of pairs is traced.
 constexpr double kAnglesOfSamples = 8.0;
-// Maximum number of pairs of element and wavelength for which the light that rough facets scatter is computed. This
-// light varies slowly from element to element. Its computation takes several times as long as the mean field.
+// Maximum number of samples for which the light that rough facets scatter is computed. A sample is a pair of element
+// and wavelength. Scattered light varies slowly from element to element, but its computation takes several times as
+// long as the mean field.
 constexpr std::size_t kScatterSamples = 24;
 // Every kComparedSamples-th sample is compared with rays.
 constexpr std::size_t kComparedSamples = 6;
@@ -164,31 +165,31 @@ class Photometer::SurfaceMeasurement {
     raytrace::TangentError error;
     bool is_complete = false;
   };
-  /// Elements and wavelengths that are traced for one direction of light, and their readings.
+  /// Traced samples for one direction of light and their readings. A sample is a pair of element and wavelength.
   struct SampledReadings {
     std::unique_ptr<const ElementSample> sample;
     std::vector<ElementReading> readings;
   };
-  /// Settings with the same direction of light, and the samples that are traced for these settings.
+  /// Settings that have the same direction of light, and the samples that are traced for this direction.
   struct Direction {
     EquivalentDirections alike;
     std::size_t lit_elements = 0;
     SampledReadings mean;       ///< light that rough facets do not scatter
-    SampledReadings scattered;  ///< light that rough facets scatter; no sample if all facets are smooth
+    SampledReadings scattered;  ///< light that rough facets scatter; no samples if all facets are smooth
   };
   /// Sample that is traced for one direction of light.
   struct SampleTask {
     std::size_t direction = 0;  ///< index of the direction
     std::size_t sample = 0;     ///< index of the sample of this direction
-    bool is_scattered = false;  ///< true: a sample of Direction::scattered
+    bool is_scattered = false;  ///< true: the sample belongs to Direction::scattered
 
     /// Returns true if the tangent-plane model is compared with rays for this sample.
     bool compares_rays() const { return !is_scattered && sample % kComparedSamples == 0; }
   };
-  /// Kind of light of an element that is measured.
+  /// Portion of an element's light that is measured.
   enum class MeasuredLight {
-    mean,     ///< only the mean field behind rough facets
-    complete  ///< including the light that rough facets scatter
+    mean,     ///< only light that rough facets do not scatter (the mean field)
+    complete  ///< all light, including the light that rough facets scatter
   };
   /// Far field of one element, and the ratios that estimate the light that is missing in it.
   struct ElementField {
@@ -208,8 +209,7 @@ class Photometer::SurfaceMeasurement {
   /// \param compares_rays true: the tangent-plane model is compared with rays
   ElementReading measure_element(const EquivalentDirections& directions, const SampledElement& sampled,
                                  MeasuredLight measured, bool compares_rays) const;
-  /// Measures the light that rough facets scatter, which is the difference between the complete light and the mean
-  /// field.
+  /// Measures the light that rough facets scatter, as the difference between all light and the mean field.
   ElementReading measure_scattered(const EquivalentDirections& directions, const SampledElement& sampled) const;
   /// Returns readings without light, one for each setting.
   std::vector<WavelengthReading> dark_pieces(const EquivalentDirections& directions) const;
@@ -353,8 +353,8 @@ Photometer::SurfaceMeasurement::ElementReading Photometer::SurfaceMeasurement::m
       });
   if (!beams.complete) return reading;
   const raytrace::FarField field = collector.finish();
-  // A trace of the mean field behind rough facets adds the scattered light to the truncated light. The truncated light
-  // is then determined by the trace of the complete light.
+  // A trace of the mean field behind rough facets adds the scattered light to `truncated`. The truncated light is
+  // therefore taken from the trace of all light.
   const bool is_mean_of_rough = photometer_.keeps_phases() && !keeps_phases;
   const double truncated = is_mean_of_rough ? 0.0 : beams.ledgers.back()[raytrace::Account::truncated];
   common.rre = cone.returned;

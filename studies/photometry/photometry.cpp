@@ -242,7 +242,7 @@ void require_exact(const Photometer& photometer, const design::Design& design, r
             design.source_name(), reference({"engine"})));
 }
 
-/// Adds a warning if diffraction is requested but cannot be computed.
+/// Adds warnings if diffraction is requested but cannot be computed, and if cells can therefore not interfere.
 void warn_of_diffraction(const Photometer& photometer, const design::Design& design, const PhotometrySettings& request,
                          Warnings& warnings) {
   if (request.diffraction && !photometer.has_diffraction())
@@ -250,6 +250,11 @@ void warn_of_diffraction(const Photometer& photometer, const design::Design& des
         {"no_diffraction", fmt::format("{}: the Monte-Carlo engine does not include diffraction, which is significant "
                                        "for cells narrower than {} mm",
                                        design.source_name(), fixed(photometer.min_undiffracted_mm(), 1))});
+  if (design.cell_spread() != nullptr && !photometer.adds_fields_of_cells())
+    warnings.push_back({"no_cell_interference",
+                        fmt::format("{}: array.depth_spread_nm has no effect, because the readings do not include "
+                                    "diffraction",
+                                    design.source_name())});
 }
 
 }  // namespace

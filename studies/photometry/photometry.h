@@ -200,7 +200,7 @@ enum class Undiffracted {
   unequal_cells,     ///< the cells of the part differ too much from each other
   strong_curvature,  ///< the entrance surface deviates too much from its tangent planes within an element
   too_many_beams,    ///< the exact engine exceeds its budget of beams
-  shells,            ///< the part is behind shells, which the camera traces by rays
+  shells,            ///< the part is behind shells, and cameras trace shells by rays
   monte_carlo        ///< the request selects Monte Carlo, which traces rays without phases
 };
 /// Reason why photometric readings do not include diffraction.

@@ -8,18 +8,12 @@
 #include "core/length_units.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
+#include "fabrication/job/tool_limits.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "studies/fabrication/job_maker.h"
 
 namespace retrace::studies {
 namespace {
-
-/// Maximum width of a chisel that a job allows.
-constexpr double kMaxToolWidthMm = 2.0;
-/// Maximum tool life that a job allows.
-constexpr double kMaxEdgeLifeMm = 1e9;
-/// Allowed excess of the tool's width over the element's width: one nanometre.
-constexpr double kExcessMm = 1e-6;
 
 /// Returns a job that cuts the prisms of a design according to [machining].
 fabrication::Job job_of_process(const design::Design& design, const geometry::RtpElement& prism,
@@ -27,19 +21,19 @@ fabrication::Job job_of_process(const design::Design& design, const geometry::Rt
   JobRequest request;
   request.machine = process.machine;
   request.strategy = fabrication::kStrategyWords[static_cast<std::size_t>(process.strategy)];
-  request.tool_width_mm = process.tool_width_mm.value_or(std::min(prism.width_mm, kMaxToolWidthMm));
+  request.tool_width_mm = process.tool_width_mm.value_or(std::min(prism.width_mm, fabrication::kMaxToolWidthMm));
   if (!process.process.empty()) request.process = process.process;
   fabrication::Job job = make_job(design, request).job;
   take_machining(process, job);
   // A plan that exceeds the tool life would be refused. The job therefore has a very large tool life, and its plan
   // contains the length of cut. The study compares this length with the actual tool life.
-  if (process.edge_life_mm) job.tool.edge_life_mm = kMaxEdgeLifeMm;
+  if (process.edge_life_mm) job.tool.edge_life_mm = fabrication::kMaxEdgeLifeMm;
   fabrication::check_job(job, {design.source_name(), 0, ""});
   return job;
 }
 
-/// Returns the smallest distance between a linear axis and its limit. The distance is computed at the roots of all
-/// elements and at the clearance height above the roots.
+/// Returns the smallest distance between the position of a linear axis and a limit of this axis. The positions are
+/// computed at the roots of all elements and at the clearance height above the roots.
 double travel_of(const fabrication::Job& job, const fabrication::Machine& machine,
                  const std::vector<fabrication::CutElement>& elements) {
   using geometry::Vec3;
@@ -80,7 +74,7 @@ void take_machining(const MachiningProcess& process, fabrication::Job& job) {
 MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess& process) {
   MachinePlan plan;
   const auto& prism = std::get<geometry::RtpElement>(design.part().element);
-  if (process.tool_width_mm && *process.tool_width_mm > prism.width_mm + kExcessMm) return plan;
+  if (process.tool_width_mm && *process.tool_width_mm > prism.width_mm + fabrication::kFitToleranceMm) return plan;
   const fabrication::Job job = job_of_process(design, prism, process);
   const fabrication::Machine machine = fabrication::load_machine(job.machine, {});
   const std::vector<fabrication::CutElement> elements = fabrication::cut_elements(job);
@@ -92,8 +86,8 @@ MachinePlan plan_on_machine(const design::Design& design, const MachiningProcess
     const double cut_mm = std::accumulate(planned.program_cuts_mm.begin(), planned.program_cuts_mm.end(), 0.0);
     plan.cut_per_element_mm = cut_mm / static_cast<double>(std::max<std::size_t>(1, elements.size()));
   } catch (const InputError&) {
-    // The machine cannot reach a facet, or an axis would exceed a limit. The results remain empty, and empty results
-    // violate all limits.
+    // The machine cannot reach a facet, or an axis would exceed a limit. The results remain empty, and an empty result
+    // violates every limit.
   }
   return plan;
 }

@@ -6,14 +6,13 @@
 
 #include "core/length_units.h"
 #include "core/number_format.h"
+#include "fabrication/job/tool_limits.h"
 #include "studies/closed_loop/as_machined.h"
 
 namespace retrace::studies {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-/// Allowed difference between tool width and element width for a tool that fits the element: one nanometre.
-constexpr double kFitMm = 1e-6;
 
 double facet_length_mm(const geometry::RtpElement& element) {
   return element.base_mm / std::numbers::sqrt2;
@@ -25,7 +24,7 @@ double seconds(double path_mm, double feed_mm_per_min) {
 
 double passes(const geometry::RtpElement& element, const MachiningProcess& process) {
   if (!process.tool_width_mm) return 1.0;
-  return std::max(1.0, std::ceil((element.width_mm - kFitMm) / *process.tool_width_mm));
+  return std::max(1.0, std::ceil((element.width_mm - fabrication::kFitToleranceMm) / *process.tool_width_mm));
 }
 
 double allowance_mm(const MachiningProcess& process) {

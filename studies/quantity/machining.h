@@ -28,21 +28,21 @@ struct MachiningProcess {
   /// Cutting strategy: two_step or unidirectional. With unidirectional, there are no finishing cuts.
   fabrication::Strategy strategy = fabrication::Strategy::two_step;
   double edge_radius_um = 0.0;  ///< radius of the tool's cutting edge, which becomes the radius of the roots
-  /// Maximum path length of a cutting edge in the material; no limit if empty.
+  /// Tool life as the maximum path length of a cutting edge in the material; empty: no limit.
   std::optional<double> edge_life_mm;
-  std::string machine;     ///< shipped machine or machine file; if empty, times follow only from the tool path
-  std::string process;     ///< shipped process or process file; if empty, the defaults above apply
-  bool has_limits = true;  ///< true: optimizations respect the limits of the tool and the machine
+  std::string machine;     ///< name or file of a machine; if empty, times are computed only from the tool path
+  std::string process;     ///< name or file of a process; if empty, the defaults above apply
+  bool has_limits = true;  ///< true: optimizations exclude designs that the tool or the machine cannot cut
   /// True: the design gets the facet texture and the root radius that result from cutting.
   bool surface_as_cut = false;
 };
 
-/// Value that [machining] and a process of fabrication have in common.
+/// Value that occurs both in [machining] and in a fabrication process.
 struct ProcessValue {
-  const char* key;  ///< key of [machining]
+  const char* key;  ///< key in the table [machining]
   double MachiningProcess::*machining;
   double fabrication::Process::*process;
-  double factor = 1.0;  ///< value of [machining] divided by the value of the process
+  double factor = 1.0;  ///< factor that converts the value of the process to the value of [machining]
 };
 inline constexpr ProcessValue kProcessValues[] = {
     {"clearance_um", &MachiningProcess::clearance_um, &fabrication::Process::clearance_mm, kUmPerMm},

@@ -5,22 +5,23 @@
 #include <utility>
 
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
 
-/// Returns true if a parameter of the study sets the key, or if the study file gives it.
+/// Returns true if the study file gives a key, or if a parameter of the study varies it.
 bool is_given(const Study& study, const std::string& key) {
   return study.document->has(key) || std::ranges::any_of(study.parameters, [&](const Parameter& parameter) {
            return std::ranges::count(parameter.keys, key) > 0;
          });
 }
 
-/// Limit of the tool or the machine: a quantity that must be at least 0.
+/// Limit of the tool or the machine. The quantity must be at least 0.
 struct MachiningLimit {
   const char* quantity;
   PlainQuantity kind;
-  const char* key;  ///< key that must be given
+  const char* key;  ///< key that must be given for the limit to apply
   bool needs_machine;
 };
 constexpr MachiningLimit kLimits[] = {
@@ -28,7 +29,8 @@ constexpr MachiningLimit kLimits[] = {
     {"machine_travel_mm", PlainQuantity::machine_travel_mm, "machining.machine", true},
     {"edge_life_margin_mm", PlainQuantity::edge_life_margin_mm, "machining.edge_life_mm", true}};
 
-/// Returns true if the study respects limits, and its first design is an array of prisms.
+/// Returns true if the study takes the limits of the tool and the machine into account. Its first design must be an
+/// array of prisms.
 bool respects_limits(const Study& study) {
   try {
     const Candidate candidate = make_candidate(study, example_values(study));
@@ -36,7 +38,7 @@ bool respects_limits(const Study& study) {
     return candidate.machining().has_limits && design.elements() != nullptr &&
            std::holds_alternative<geometry::RtpElement>(design.part().element);
   } catch (const InputError&) {
-    return false;  // the study reports an invalid design when it computes the design
+    return false;  // an invalid design is reported when it is evaluated
   }
 }
 
@@ -52,10 +54,18 @@ std::vector<Constraint> machining_limits(const Study& study) {
   return limits;
 }
 
+void add_machining_limits(const Study& study, std::vector<Constraint>& constraints) {
+  const std::vector<Constraint> given = constraints;
+  for (const Constraint& limit : machining_limits(study)) {
+    const auto is_same = [&](const Constraint& constraint) { return constraint.quantity == limit.quantity; };
+    if (quantity_named(study, limit.quantity) != nullptr && std::ranges::none_of(given, is_same))
+      constraints.push_back(limit);
+  }
+}
+
 Study with_machining_limits(Study study) {
   for (const Constraint& limit : machining_limits(study)) {
-    if (std::ranges::any_of(study.quantities, [&](const auto& each) { return each->name() == limit.quantity; }))
-      continue;
+    if (quantity_named(study, limit.quantity) != nullptr) continue;
     for (const MachiningLimit& each : kLimits)
       if (limit.quantity == each.quantity) study.quantities.push_back(make_plain(each.quantity, each.kind));
   }

@@ -12,6 +12,7 @@
 #include "design/design_part.h"
 #include "design/entrance_of_design.h"
 #include "design/optical_model.h"
+#include "fabrication/job/tool_limits.h"
 #include "geometry/elements/element_cells.h"
 #include "studies/inspect/inspect.h"
 #include "studies/quantity/machine_plan.h"
@@ -164,7 +165,7 @@ std::optional<double> total_reflection_limit_deg(const design::Design& design) {
   return design::tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
-/// Returns the plan of a candidate on its machine. Returns null if the process names no machine.
+/// Returns the plan of a candidate on its machine, or null if the process names no machine.
 std::shared_ptr<const MachinePlan> machine_plan_of(const Candidate& candidate) {
   if (candidate.machining().machine.empty()) return nullptr;
   prism_of(candidate);
@@ -173,8 +174,8 @@ std::shared_ptr<const MachinePlan> machine_plan_of(const Candidate& candidate) {
   });
 }
 
-/// Returns the machining time of one element in seconds. If a machine is given, the time is the mean over all elements
-/// of the plan.
+/// Returns the machining time of one element in seconds. If the process names a machine, it is the mean over all
+/// elements of the plan.
 std::optional<double> element_time_s(const Candidate& candidate) {
   const auto plan = machine_plan_of(candidate);
   if (!plan) return seconds_per_element(prism_of(candidate), candidate.machining());
@@ -199,24 +200,23 @@ std::optional<double> area_rate_mm2_per_h(const Candidate& candidate) {
   return 3600.0 * full_element_area_mm2(candidate.design().part()) / *time_s;
 }
 
-/// Returns the width of an element minus the width of the tool. Returns 0 if the process defines no tool width, or if
-/// the difference is below one nanometre.
+/// Returns the width of an element minus the width of the tool. Returns 0 if the process gives no tool width, or if the
+/// difference is less than one nanometre.
 double tool_fit_mm(const Candidate& candidate) {
-  constexpr double fit_mm = 1e-6;
   const double width_mm = prism_of(candidate).width_mm;
   const double margin_mm = width_mm - candidate.machining().tool_width_mm.value_or(width_mm);
-  return std::abs(margin_mm) < fit_mm ? 0.0 : margin_mm;
+  return std::abs(margin_mm) < fabrication::kFitToleranceMm ? 0.0 : margin_mm;
 }
 
-/// Returns the smallest distance between an axis and its limit. Returns no value if no machine is given, or if the
+/// Returns the smallest distance of an axis from its limit. Returns no value if the process names no machine, or if the
 /// machine cannot reach a facet.
 std::optional<double> machine_travel_mm(const Candidate& candidate) {
   const auto plan = machine_plan_of(candidate);
   return plan ? plan->travel_mm : std::nullopt;
 }
 
-/// Returns the tool life minus the path length of the edge in one element. Returns no value if no machine or no tool
-/// life is given.
+/// Returns the tool life minus the path length of the edge in one element. Returns no value without a machine or a tool
+/// life.
 std::optional<double> edge_life_margin_mm(const Candidate& candidate) {
   const auto plan = machine_plan_of(candidate);
   const std::optional<double>& life_mm = candidate.machining().edge_life_mm;

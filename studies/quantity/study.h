@@ -72,8 +72,8 @@ struct Study {
   std::vector<std::string> files;
   std::vector<std::string> overrides;  ///< values of the option --set
   std::uint32_t seed = 1;
-  /// Accuracy of all quantities, relative to the settings of [analysis]. If a level is set, stored points contain two
-  /// additional inputs, its scale and its replicate. Empty: the settings of [analysis] apply.
+  /// Accuracy of all quantities relative to the settings of [analysis]. If it is set, stored points contain the scale
+  /// and the replicate of this level as additional inputs. Empty: the settings of [analysis] apply.
   std::optional<ErrorLevel> level;
   std::vector<Parameter> parameters;
   Quantities quantities;

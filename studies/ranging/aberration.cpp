@@ -14,17 +14,20 @@ namespace {
 
 using geometry::Vec2;
 
-// Gravitational constant times the mass of the Earth, and its equatorial radius (IERS Conventions 2010, Table 1.1).
+// Gravitational constant times the mass of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthKm3PerS2 = 398600.4418;
+// Equatorial radius of the Earth (IERS Conventions 2010, Table 1.1).
 constexpr double kEarthRadiusKm = 6378.1366;
 constexpr double kLightKmPerS = 1e6 * kLightMmPerPs;
 
-// Number of integration points per width of the finest details, and number of additional points.
+// Number of integration points per angular width of the finest details.
 constexpr double kPointsPerDetail = 3.0;
+// Number of integration points that are added, so that small annuli also have enough points.
 constexpr double kMorePoints = 6.0;
-// Number of rings and of points along each ring, per width of the finest details, for the search of extremes.
+// Number of sample rings, and of samples along each ring, per angular width of the finest details. The samples are the
+// starts of the search for extremes.
 constexpr double kSearchPerDetail = 6.0;
-// Number of times that the search for an extreme halves its step.
+// The search for an extreme ends after this number of steps. Each step that finds no larger value is halved.
 constexpr int kHalvings = 20;
 
 Vec2 at(double radius, double angle) {
@@ -35,13 +38,34 @@ std::size_t count_of(double periods) {
   return static_cast<std::size_t>(std::ceil(periods));
 }
 
+/// Numbers of rings and of points along each ring.
+struct RingCounts {
+  std::size_t rings = 1;
+  std::size_t around = 1;
+};
+
+/// Returns the numbers of integration points over an annulus.
+RingCounts integration_counts(const Annulus& annulus, double detail_rad) {
+  const double width = annulus.outer_rad - annulus.inner_rad;
+  return {width > 0.0 ? count_of(kPointsPerDetail * width / detail_rad + kMorePoints) : 1,
+          count_of(kPointsPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints)};
+}
+
+/// Returns the numbers of samples over an annulus among which its extremes are searched.
+RingCounts search_counts(const Annulus& annulus, double detail_rad) {
+  const double width = annulus.outer_rad - annulus.inner_rad;
+  return {width > 0.0 ? 1 + count_of(kSearchPerDetail * width / detail_rad) : 1,
+          count_of(kSearchPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints)};
+}
+
 /// Point in polar coordinates.
 struct PolarPoint {
   double radius = 0.0;
   double angle = 0.0;
 };
 
-/// Returns the largest value of a function near a point. The pattern search halves its step repeatedly.
+/// Returns the largest value of a function near a point. The pattern search tries four neighbours and halves its step
+/// if none of them has a larger value.
 double refined_max(const Annulus& annulus, PolarPoint best, double value, double step_rad,
                    const DirectionValues& values) {
   double radial = step_rad;
@@ -71,7 +95,7 @@ double refined_max(const Annulus& annulus, PolarPoint best, double value, double
 Annulus aberration_of_orbit(double height_km, double elevation_deg) {
   const double radius_km = kEarthRadiusKm + height_km;
   const double largest = 2.0 * std::sqrt(kEarthKm3PerS2 / radius_km) / kLightKmPerS;
-  // Sine of the angle between the directions from the satellite to the station and to the centre of the Earth.
+  // Sine of the angle at the satellite between the directions to the station and to the centre of the Earth.
   const double sine = kEarthRadiusKm / radius_km * std::cos(elevation_deg * kRadPerDeg);
   return {largest * std::sqrt(1.0 - sine * sine), largest};
 }
@@ -79,9 +103,8 @@ Annulus aberration_of_orbit(double height_km, double elevation_deg) {
 std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_rad) {
   const double width = annulus.outer_rad - annulus.inner_rad;
   if (annulus.outer_rad == 0.0) return {{Vec2::Zero(), 1.0}};
-  const std::size_t rings = width > 0.0 ? count_of(kPointsPerDetail * width / detail_rad + kMorePoints) : 1;
+  const auto [rings, around] = integration_counts(annulus, detail_rad);
   const raytrace::GaussRule rule = rings > 1 ? raytrace::gauss_legendre(rings) : raytrace::GaussRule{{0.5}, {1.0}};
-  const std::size_t around = count_of(kPointsPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints);
   std::vector<AnnulusPoint> points;
   double sum = 0.0;
   for (std::size_t ring = 0; ring < rings; ++ring) {
@@ -96,6 +119,14 @@ std::vector<AnnulusPoint> annulus_points(const Annulus& annulus, double detail_r
   return points;
 }
 
+double evaluations_over(const Annulus& annulus, double detail_rad) {
+  if (annulus.outer_rad == 0.0) return 1.0;
+  const RingCounts mean = integration_counts(annulus, detail_rad);
+  const RingCounts search = search_counts(annulus, detail_rad);
+  return static_cast<double>(mean.rings) * static_cast<double>(mean.around) +
+         static_cast<double>(search.rings) * static_cast<double>(search.around);
+}
+
 AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, const DirectionValues& values) {
   AnnulusStatistics statistics;
   const std::vector<AnnulusPoint> points = annulus_points(annulus, detail_rad);
@@ -105,8 +136,7 @@ AnnulusStatistics statistics_over(const Annulus& annulus, double detail_rad, con
   for (std::size_t k = 0; k < points.size(); ++k) statistics.mean += points[k].weight * of_points[k];
   if (annulus.outer_rad == 0.0) return {statistics.mean, statistics.mean, statistics.mean};
   const double width = annulus.outer_rad - annulus.inner_rad;
-  const std::size_t rings = width > 0.0 ? 1 + count_of(kSearchPerDetail * width / detail_rad) : 1;
-  const std::size_t around = count_of(kSearchPerDetail * kTwoPi * annulus.outer_rad / detail_rad + kMorePoints);
+  const auto [rings, around] = search_counts(annulus, detail_rad);
   std::vector<PolarPoint> searched;
   angles.clear();
   for (std::size_t ring = 0; ring < rings; ++ring)

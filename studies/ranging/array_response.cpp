@@ -15,25 +15,28 @@
 namespace retrace::studies {
 namespace {
 
-// Half of the distance that light travels in 1 ps.
+// One-way range that corresponds to 1 ps of round-trip time, which is half of the distance that light travels in 1 ps.
 constexpr double kOneWayMmPerPs = 0.5 * kLightMmPerPs;
-// Margin of the response in front of the first cube and behind the last cube, and distance between points of the
-// response. Both are in standard deviations of the pulse.
+// Margin of the response in front of the first cube and behind the last cube, in standard deviations of the pulse.
 constexpr double kResponseMargin = 5.0;
+// Distance between neighbouring points of the response, in standard deviations of the pulse.
 constexpr double kResponseStep = 0.2;
-// Maximum number of points of a response, which limits its size for short pulses.
+// Maximum number of points of a response. It limits the size of the result for short pulses.
 constexpr double kMaxResponsePoints = 4000.0;
 constexpr std::uint32_t kPhaseStream = 66;
 
-/// Amplitudes of the light of a cube, for one of the two polarisation states of the transmitted light.
+/// Complex amplitudes of the light that a cube returns along the two axes of the source. The unit is m; the squared
+/// norm is a cross section.
 using Amplitude = Eigen::Vector2cd;
 
-/// Light of all cubes, divided into light that interferes and light that only adds power.
+/// Returned light of all cubes. The strongest coherent group of each cube interferes with other cubes, and all
+/// remaining groups only add power.
 struct Emitters {
-  std::vector<std::array<Amplitude, 2>> amplitudes;  ///< strongest coherent group of each cube
+  /// strongest coherent group of each cube, for both states of pure_states()
+  std::vector<std::array<Amplitude, 2>> amplitudes;
   std::vector<double> range_mm;
-  double other_m2 = 0.0;      ///< cross section of all other coherent groups
-  double other_moment = 0.0;  ///< sum of cross section times range over the other groups
+  double other_m2 = 0.0;      ///< cross section of all remaining coherent groups
+  double other_moment = 0.0;  ///< sum of cross section times range over the remaining groups
 };
 
 double power_of(const std::array<Amplitude, 2>& amplitudes) {
@@ -70,14 +73,15 @@ std::vector<std::complex<double>> random_phases(std::size_t count, std::uint32_t
   return phases;
 }
 
-/// Returns the overlap of the fields of two pulses. The overlap is 1 if both pulses arrive at the same time.
-/// \param sigma_mm standard deviation of the power of the pulse, as a one-way range
+/// Returns the overlap of the fields of two pulses. It is 1 if both pulses arrive at the same time, and decreases to 0
+/// with the difference of their ranges.
+/// \param sigma_mm standard deviation of the pulse power, in mm of one-way range
 double overlap(double range_difference_mm, double sigma_mm) {
   return std::exp(-range_difference_mm * range_difference_mm / (8.0 * sigma_mm * sigma_mm));
 }
 
-/// Returns a shot with continuous light. The centroid of continuous light is not defined, so the centroid of the
-/// incoherent sum is used.
+/// Returns one simulated measurement (shot) with continuous light. Continuous light has no arrival time. The range of
+/// the shot is therefore the centroid of the ranges of all cubes, weighted by their cross sections.
 Shot continuous_shot(const Emitters& all, const std::vector<std::complex<double>>& phases, double centroid_mm) {
   std::array<Amplitude, 2> sums = {Amplitude::Zero(), Amplitude::Zero()};
   for (std::size_t k = 0; k < all.amplitudes.size(); ++k)

@@ -20,21 +20,21 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Minimum power of a beam that is traced, as a fraction of the incident power.
+// Beams with less power than this fraction of the incident power are not traced.
 constexpr double kCubeCutoff = 1e-8;
-// Half angle of the cone around the direction to the source. Only beams inside the cone are diffracted. The cone is
-// wide enough for angle errors of some arc minutes.
+// Only beams within this angle from the direction to the source are diffracted. The angle is large enough for angle
+// errors of some arc minutes.
 constexpr double kDiffractedRad = 0.02;
-// Threshold for the trace of the matrix ReturnedBeam::entry_from_exit. The trace is -2 for light that the cube returns
-// directly. It is 2 for light that the entrance face has reflected between two retroreflections.
+// Threshold that identifies light with a reflection at the entrance face between two retroreflections. The trace of the
+// linear part of ReturnedBeam::entry_from_exit is 2 for such light, and -2 for light that returns directly.
 constexpr double kReflectedTrace = 1.0;
-// Step of the wavelength in the numerical derivative of the refractive index. The error of the derivative is below
-// 1e-11 per nm.
+// Wavelength step of the numerical derivative of the refractive index. With this step, the error of the derivative is
+// below 1e-11 per nm.
 constexpr double kDispersionStepNm = 1.0;
-// Maximum difference between the components of two directions that count as equal.
+// Two directions count as equal if their components differ by less than this value.
 constexpr double kSameDirection = 1e-9;
 
-/// Checks that a design is a single cube corner that this study supports.
+/// Checks that a design is a single cube corner of a kind that ranging supports.
 void check_design(const design::Design& design) {
   design::require_supported(design, {.what = "retrace ranging", .substrates = false});
   const geometry::PartSpec& spec = design.part();
@@ -61,8 +61,8 @@ design::Design with_wavelengths(design::Design design, const std::vector<double>
   return design;
 }
 
-/// Returns the group index n - w dn/dw, where w is the wavelength. The derivative is a finite difference of fourth
-/// order.
+/// Returns the group index n - w dn/dw, where w is the vacuum wavelength. The derivative is a fourth-order finite
+/// difference.
 double group_index_at(const design::OpticsOfDesign& optics, double wavelength_nm) {
   const auto index = [&](int steps) { return optics.at(wavelength_nm + kDispersionStepNm * steps).index; };
   const double slope = (8.0 * (index(1) - index(-1)) - (index(2) - index(-2))) / (12.0 * kDispersionStepNm);

@@ -14,7 +14,7 @@ using geometry::Vec2, geometry::Vec3, raytrace::JonesMatrix, raytrace::Stokes;
 namespace field_lanes = raytrace::field_lanes;
 
 constexpr double kMm2PerM2 = 1e6;
-// Minimum power of a beam that deflection_rad() takes into account, as a fraction of the diffracted power.
+// deflection_rad() ignores beams with less power than this fraction of the diffracted power.
 constexpr double kNoticeablePower = 1e-2;
 
 }  // namespace

@@ -15,13 +15,14 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Minimum cosine of the angle of incidence of an illuminated cube.
+// Cubes whose cosine of the angle of incidence is smaller than this value count as not illuminated.
 constexpr double kMinCosine = 1e-4;
-// Step to which the components of directions are rounded before directions are compared.
+// Before directions are compared, their components are rounded to multiples of this step.
 constexpr double kDirectionStep = 1e-9;
-// Number of directions that one task evaluates.
+// Number of directions that one parallel task evaluates.
 constexpr std::size_t kDirectionsPerTask = 64;
-// Maximum deviation from the x axis of a source that uses +y instead of +x as its reference axis.
+// If a source is closer to the x axis than this value, its reference axis is +y instead of +x. The value is the sine of
+// the angle.
 constexpr double kAlongX = 1e-6;
 
 using LightKey = std::array<std::int64_t, 4>;
@@ -46,7 +47,8 @@ raytrace::ReturnFrame return_frame_of(const Vec3& to_source) {
 LitCubes::LitCubes(const CubeSet& set, const Vec3& to_source, std::size_t wavelength, const Cancellation* cancel)
     : frame_(return_frame_of(to_source)) {
   std::map<LightKey, std::size_t> known;
-  // A single cube shares its field with no other cube. Its light is therefore traced in the given direction.
+  // In an array, equivalent directions of light are traced only one time. A single cube is traced in the given
+  // direction.
   const bool may_share = set.cubes.size() > 1;
   for (std::size_t number = 0; number < set.cubes.size(); ++number) {
     const ArrayCube& cube = set.cubes[number];
@@ -131,7 +133,8 @@ double LitCubes::undiffracted_power() const {
   return mean_of(&CubeField::undiffracted_power);
 }
 
-/// Returns the fields of a cube in several directions, along the axes of the source in the frame of the array.
+/// Returns the fields of one cube in several directions. The fields refer to the axes of the source in the frame of the
+/// array.
 /// \param directions unit vectors in the frame of the array
 std::vector<DirectionField> LitCubes::fields_of(const Lit& lit, std::span<const Vec3> directions) const {
   std::vector<Vec3> own;

@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "design/io/design_reader.h"
 #include "design/io/part_reader.h"
 #include "geometry/direction.h"
@@ -24,15 +27,24 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::Stokes;
 
-// Margin of the map around the annulus and around the directions of all beams, in widths of the finest details.
+// Margin of the map around the most deflected beam, in angular widths of the finest details.
 constexpr double kMapMargin = 4.0;
+// Minimum half width of the map, divided by the outer radius of the annulus.
 constexpr double kAnnulusMargin = 1.25;
-// Number of rings, and number of points per ring, for the cross section as a function of the angle from the source.
+// Number of rings around the direction to the source on which statistics of the cross section are computed.
 constexpr std::size_t kRings = 60;
+// Number of points on each ring.
 constexpr std::size_t kPointsPerRing = 72;
-// Maximum power that is not diffracted and causes no warning, as a fraction of the incident power.
+// A warning is issued if more than this fraction of the incident power is in beams whose diffraction is not computed.
 constexpr double kMaxUndiffractedPower = 1e-3;
-// Degree of polarisation below which light counts as unpolarised.
+// Maximum number of directions in which the far field of one point is evaluated. This takes some minutes.
+constexpr double kMaxDirections = 1e8;
+// Maximum number of directions of an annulus, whose values are all stored.
+constexpr double kMaxAnnulusDirections = 1e7;
+// Number of directions, including those of the discs of source and receiver, that are evaluated between two reports of
+// progress.
+constexpr std::size_t kDirectionsPerReport = 65536;
+// Light with a smaller degree of polarisation counts as unpolarised.
 constexpr double kMinPolarisation = 1e-9;
 
 Stokes sent_stokes(const RangingRequest& request, const design::Design& design) {
@@ -56,7 +68,8 @@ Vec2 observation_of(const RangingRequest& request, const std::optional<Annulus>&
   return annulus ? Vec2(0.5 * (annulus->inner_rad + annulus->outer_rad), 0.0) : Vec2(Vec2::Zero());
 }
 
-/// Divides returned light into light with the transmitted polarisation and light with the orthogonal polarisation.
+/// Splits the returned light into its component with the transmitted polarisation and its component with the orthogonal
+/// polarisation.
 ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sent) {
   ByPolarisation<double> result{returned.i};
   const double degree = std::hypot(sent.q, sent.u, sent.v);
@@ -67,41 +80,85 @@ ByPolarisation<double> by_polarisation(const Stokes& returned, const Stokes& sen
   return result;
 }
 
-/// Returned light of the illuminated cubes in any direction, averaged over the discs of source and receiver.
-class ObservedLight {
+bool has_polarisation(const Stokes& sent) {
+  return by_polarisation({}, sent).parallel.has_value();
+}
+
+/// Returns the directions of a mean over the discs of source and receiver, with their weights.
+std::vector<raytrace::ApertureKernel::Node> nodes_of(const RangingRequest& request, double detail_rad) {
+  const raytrace::PhotometricApertures apertures{Angle::from_rad(request.source_arcsec * kRadPerArcsec),
+                                                 Angle::from_rad(request.receiver_arcsec * kRadPerArcsec)};
+  if (apertures.source.rad() <= 0.0 && apertures.receiver.rad() <= 0.0) return {{Vec2::Zero(), 1.0}};
+  return raytrace::ApertureKernel(apertures).nodes(detail_rad);
+}
+
+/// Returns the approximate number of directions in which one point is evaluated, including its map.
+double directions_of(const RangingSettings& settings, double detail_rad) {
+  const auto points = static_cast<double>(settings.request.map_points);
+  double directions = points * points + static_cast<double>(kRings * kPointsPerRing);
+  const double components = has_polarisation(settings.sent) ? 3.0 : 1.0;
+  if (settings.annulus) directions += components * evaluations_over(*settings.annulus, detail_rad);
+  return directions * static_cast<double>(nodes_of(settings.request, detail_rad).size());
+}
+
+/// Progress of one point, measured by the number of evaluated directions.
+class PointProgress {
  public:
-  ObservedLight(const LitCubes& lit, const RangingSettings& settings, const Cancellation* cancel)
-      : lit_(lit), sent_(settings.sent), cancel_(cancel) {
-    const raytrace::PhotometricApertures apertures{Angle::from_rad(settings.request.source_arcsec * kRadPerArcsec),
-                                                   Angle::from_rad(settings.request.receiver_arcsec * kRadPerArcsec)};
-    if (apertures.source.rad() > 0.0 || apertures.receiver.rad() > 0.0)
-      nodes_ = raytrace::ApertureKernel(apertures).nodes(lit.detail_rad());
-    else
-      nodes_ = {{Vec2::Zero(), 1.0}};
+  /// \param whole receiver of the finished fraction of the point, or null
+  /// \param directions expected number of directions
+  PointProgress(Progress* whole, double directions) : whole_(whole), directions_(directions) {}
+  void add(std::size_t directions) {
+    done_ += static_cast<double>(directions);
+    if (whole_ != nullptr) whole_->at(std::min(1.0, done_ / directions_));
   }
 
-  std::vector<ByPolarisation<double>> at(const std::vector<Vec2>& angles_rad) const {
-    std::vector<Vec2> all;
-    for (const Vec2& angles : angles_rad)
-      for (const raytrace::ApertureKernel::Node& node : nodes_) all.push_back(angles + node.offset_rad);
-    const std::vector<Stokes> stokes = lit_.stokes(all, sent_, cancel_);
-    std::vector<ByPolarisation<double>> result;
-    for (std::size_t k = 0; k < angles_rad.size(); ++k) {
-      Stokes mean;
-      for (std::size_t node = 0; node < nodes_.size(); ++node)
-        mean += nodes_[node].weight * stokes[k * nodes_.size() + node];
-      result.push_back(by_polarisation(mean, sent_));
+ private:
+  Progress* whole_;
+  double directions_;
+  double done_ = 0.0;
+};
+
+/// Cross section of all illuminated cubes as a function of the direction of the returned light. It is averaged over the
+/// angular extent of the source and the receiver.
+class ObservedLight {
+ public:
+  ObservedLight(const LitCubes& lit, const RangingSettings& settings, PointProgress& progress,
+                const Cancellation* cancel)
+      : lit_(lit),
+        sent_(settings.sent),
+        progress_(progress),
+        cancel_(cancel),
+        nodes_(nodes_of(settings.request, lit.detail_rad())) {}
+
+  /// Returns the light in several directions. If the run is cancelled, the values are meaningless.
+  std::vector<ByPolarisation<double>> at(std::span<const Vec2> angles_rad) const {
+    std::vector<ByPolarisation<double>> result(angles_rad.size());
+    const std::size_t per_report = std::max<std::size_t>(1, kDirectionsPerReport / nodes_.size());
+    for (std::size_t first = 0; first < angles_rad.size() && !is_cancelled(cancel_); first += per_report) {
+      const std::size_t count = std::min(per_report, angles_rad.size() - first);
+      std::vector<Vec2> all;
+      for (const Vec2& angles : angles_rad.subspan(first, count))
+        for (const raytrace::ApertureKernel::Node& node : nodes_) all.push_back(angles + node.offset_rad);
+      const std::vector<Stokes> stokes = lit_.stokes(all, sent_, cancel_);
+      for (std::size_t k = 0; k < count; ++k) {
+        Stokes mean;
+        for (std::size_t node = 0; node < nodes_.size(); ++node)
+          mean += nodes_[node].weight * stokes[k * nodes_.size() + node];
+        result[first + k] = by_polarisation(mean, sent_);
+      }
+      progress_.add(all.size());
     }
     return result;
   }
 
-  /// Returns the statistics of one component over an annulus. The result is empty if the component is not defined.
+  /// Returns the statistics of one polarisation component over an annulus. Returns nothing if the component is not
+  /// defined, because the transmitted light is unpolarised.
   template <class Component>
   std::optional<AnnulusStatistics> over(const Annulus& annulus, const Component& component) const {
     if (!component(by_polarisation({}, sent_))) return std::nullopt;
     return statistics_over(annulus, lit_.detail_rad(), [&](const std::vector<Vec2>& angles_rad) {
       std::vector<double> values;
-      for (const ByPolarisation<double>& value : at(angles_rad)) values.push_back(*component(value));
+      for (const ByPolarisation<double>& value : at(angles_rad)) values.push_back(component(value).value_or(0.0));
       return values;
     });
   }
@@ -109,6 +166,7 @@ class ObservedLight {
  private:
   const LitCubes& lit_;
   Stokes sent_;
+  PointProgress& progress_;
   const Cancellation* cancel_;
   std::vector<raytrace::ApertureKernel::Node> nodes_;
 };
@@ -155,9 +213,9 @@ RangingMap map_of(const ObservedLight& light, const LitCubes& lit, const Ranging
   return map;
 }
 
-/// Returns the design after replacing the errors of its dihedral angles.
+/// Returns a copy of a design with other errors of the dihedral angles.
 design::Design with_errors(const design::Design& design, const std::array<double, 3>& errors_arcsec) {
-  // An empty value removes a key. The design may give its errors in either unit.
+  // An empty value removes a key. Both keys are removed, because the design may contain either of them.
   const std::vector<std::string> overrides = {
       fmt::format("{}=", design::kDihedralErrorArcmin),
       fmt::format("{}=[{}, {}, {}]", design::kDihedralErrorArcsec, shortest(errors_arcsec[0]),
@@ -174,7 +232,7 @@ std::vector<double> sorted_wavelengths(const RangingRequest& request, const desi
   return wavelengths;
 }
 
-/// Returns the cubes of a study. Without an array, the result is a single cube whose frame is the part frame.
+/// Returns the cubes of a study. Without an array, the result contains a single cube in the part frame.
 CubeSet cube_set(const design::Design& design, const RangingSettings& settings) {
   const std::vector<double> wavelengths = sorted_wavelengths(settings.request, design);
   CubeSet set;
@@ -193,6 +251,25 @@ CubeSet cube_set(const design::Design& design, const RangingSettings& settings) 
     set.variant_of_cube.push_back(it->second);
   }
   return set;
+}
+
+/// Checks that the far field of each point is evaluated in an acceptable number of directions.
+/// \throw InputError that names the field with the most directions
+void check_directions(const RangingSettings& settings, const CubeCorner& corner) {
+  const double diameter_mm = std::sqrt(4.0 / std::numbers::pi * corner.entrance_mm2());
+  const double detail_rad = 1e-6 * corner.indices().front().wavelength_nm / diameter_mm;
+  const double of_annulus = settings.annulus ? evaluations_over(*settings.annulus, detail_rad) : 0.0;
+  if (of_annulus > kMaxAnnulusDirections)
+    throw InputError(Field{settings.request.orbit_km ? "orbit_km" : "aberration_arcsec"},
+                     fmt::format("the annulus contains {:.2g} directions at the resolution of the far field, at most "
+                                 "{:.2g} are allowed: give a smaller annulus",
+                                 of_annulus, kMaxAnnulusDirections));
+  const double directions = directions_of(settings, detail_rad);
+  if (directions > kMaxDirections)
+    throw InputError(Field{"map_points"},
+                     fmt::format("the far field of each point would be evaluated in {:.2g} directions, at most {:.2g} "
+                                 "are allowed: give fewer points of the map, or smaller discs of source and receiver",
+                                 directions, kMaxDirections));
 }
 
 }  // namespace
@@ -229,9 +306,9 @@ struct RangingStudy::Prepared {
   RangingSettings settings;
   CubeSet set;
 
-  /// Computes one point. Adds the map to `result` for the first point.
+  /// Computes one point. For the first point, also stores the map in `result`.
   RangingPoint point_of(std::size_t wavelength, double incidence_deg, double azimuth_deg, RangingResult& result,
-                        const Cancellation* cancel) const {
+                        Progress* progress, const Cancellation* cancel) const {
     const CubeCorner& corner = set.variants.front();
     RangingPoint point;
     point.index = corner.indices()[wavelength];
@@ -263,8 +340,9 @@ struct RangingStudy::Prepared {
       if (settings.annulus) point.annulus = dark_annulus();
       return point;
     }
-    const ObservedLight light(lit, settings, cancel);
-    point.centre = light.at({Vec2::Zero()}).front();
+    PointProgress of_point(progress, directions_of(settings, lit.detail_rad()));
+    const ObservedLight light(lit, settings, of_point, cancel);
+    point.centre = light.at(std::array{Vec2(Vec2::Zero())}).front();
     if (settings.annulus) point.annulus = over_annulus(light, *settings.annulus);
     point.diffracted_power = lit.diffracted_power();
     if (result.map.values.empty()) result.map = map_of(light, lit, settings);
@@ -281,7 +359,7 @@ struct RangingStudy::Prepared {
 
   ByPolarisation<AnnulusStatistics> dark_annulus() const {
     ByPolarisation<AnnulusStatistics> dark;
-    if (!by_polarisation({}, settings.sent).parallel) return dark;
+    if (!has_polarisation(settings.sent)) return dark;
     dark.parallel = dark.crossed = AnnulusStatistics{};
     return dark;
   }
@@ -306,6 +384,7 @@ RangingStudy::RangingStudy(design::Design design, const RangingRequest& request,
   prepared->settings.observation_rad = observation_of(request, prepared->settings.annulus);
   prepared->settings.cubes = std::move(cubes);
   prepared->set = cube_set(design, prepared->settings);
+  check_directions(prepared->settings, prepared->set.variants.front());
   prepared->design = std::move(design);
   prepared_ = prepared;
 }
@@ -325,12 +404,14 @@ RangingResult RangingStudy::run(Progress* progress, const Cancellation* cancel) 
     for (const double incidence_deg : request.incidence_deg)
       for (const double azimuth_deg : request.azimuth_deg) {
         if (is_cancelled(cancel)) break;
-        RangingPoint point = prepared_->point_of(wavelength, incidence_deg, azimuth_deg, result, cancel);
+        PartProgress of_point(progress, static_cast<double>(result.points.size()) / static_cast<double>(total),
+                              static_cast<double>(result.points.size() + 1) / static_cast<double>(total));
+        RangingPoint point = prepared_->point_of(wavelength, incidence_deg, azimuth_deg, result, &of_point, cancel);
         if (is_cancelled(cancel)) break;
         result.points.push_back(std::move(point));
-        if (progress != nullptr) progress->at(static_cast<double>(result.points.size()) / static_cast<double>(total));
+        of_point.at(1.0);
       }
-  if (result.points.empty()) result.map = {};  // the map of an interrupted point is incomplete
+  if (result.points.empty()) result.map = {};  // the map is incomplete, because its point was interrupted
   result.complete = result.points.size() == total;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

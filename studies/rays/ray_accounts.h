@@ -14,8 +14,8 @@ namespace retrace::studies {
 /// do not need that account, because light that shells reflect is not traced further.
 inline constexpr auto kMissedAccount = static_cast<std::size_t>(raytrace::Account::shell_reflected);
 
-/// Names of the accounts of rays, in the order of their numbers. Light in the remaining accounts of the ledger is not
-/// traced further and belongs to no ray. These accounts are 0 for most parts.
+/// Names of the accounts to which rays can belong, in the order of their numbers. The ledger has further accounts for
+/// light that is not traced as rays. These accounts are 0 for most parts.
 inline constexpr std::array<std::string_view, kMissedAccount + 1> kRayAccounts = [] {
   std::array<std::string_view, kMissedAccount + 1> names;
   for (std::size_t k = 0; k < kMissedAccount; ++k) names[k] = raytrace::kAccountNames[k];

@@ -13,6 +13,7 @@
 #include "design/io/design_reader.h"
 #include "design/io/part_reader.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/ruled_pattern.h"
 
 namespace retrace::studies {
 namespace {
@@ -27,6 +28,8 @@ double size_of(const geometry::Element& element) {
   if (const auto* rtp = std::get_if<RtpElement>(&element)) return rtp->base_mm;
   if (const auto* hexagonal = std::get_if<geometry::HexagonalCube>(&element)) return hexagonal->aperture_mm;
   if (const auto* round = std::get_if<geometry::RoundCube>(&element)) return round->diameter_mm;
+  if (const auto* ruled = std::get_if<geometry::RuledCells>(&element))
+    return geometry::aperture_of_mean_cell_mm(*ruled->pattern);
   return std::get<geometry::TriangularCube>(element).aperture_mm;
 }
 
@@ -40,7 +43,7 @@ bool is_round(const PartSpec& spec) {
   return std::holds_alternative<geometry::RoundCube>(spec.element);
 }
 
-/// Returns true if the design gives its dihedral errors in arc seconds.
+/// Returns true if the design specifies its dihedral angle errors in arc seconds.
 bool is_in_arcsec(const design::Design& design) {
   return design.document && design.document->has(design::kDihedralErrorArcsec);
 }
@@ -271,6 +274,8 @@ std::string_view parameter_name(RreParameter parameter) {
 }
 
 std::vector<RreParameter> parameters_of(const design::Design& design) {
+  if (std::holds_alternative<geometry::RuledCells>(design.part().element))
+    return {RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};
   const bool is_prism = std::holds_alternative<RtpElement>(design.part().element);
   return {RreParameter::size_mm, is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg,
           RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};

@@ -10,6 +10,7 @@
 #include "design/entrance_of_design.h"
 #include "design/part_of_design.h"
 #include "geometry/entrance/curved_boundary.h"
+#include "geometry/entrance/exact_boundary.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/mould_boundary.h"
@@ -56,7 +57,9 @@ geometry::PartSpec spec_of(const design::Design& design, SolidKind what) {
   return spec;
 }
 
+/// Measures the mesh of a solid. The measures of an exact solid are already set.
 void measure(Solid& solid) {
+  if (solid.exact) return;
   solid.volume_mm3 = geometry::volume_mm3(solid.mesh);
   solid.area_mm2 = geometry::area_mm2(solid.mesh);
   solid.lower_mm.setConstant(INFINITY);
@@ -85,6 +88,10 @@ void check_entrance(const design::Design& design, SolidKind what, const SolidReq
 
 void add_warnings(Solid& solid) {
   const std::string name = solid.design.source_name();
+  if (solid.design.substance.is_hollow)
+    solid.warnings.push_back(
+        {"solid_of_air",
+         name + ": the design is a hollow cube corner, so that the solid is the air in front of its mirrors"});
   if (!solid.is_manifold)
     solid.warnings.push_back(
         {"touching_edges", name + ": the part touches itself along edges; some programs treat it as an open surface"});
@@ -112,8 +119,22 @@ geometry::Part part_to_write(const design::Design& design, SolidKind what) {
   return part;
 }
 
+/// Sets the exact boundary and the measures of a solid.
+void set_exact_boundary(Solid& solid, geometry::ExactBoundary boundary) {
+  solid.surface_error_mm = boundary.entrance_error_mm;
+  solid.volume_mm3 = boundary.volume_mm3;
+  solid.area_mm2 = boundary.area_mm2;
+  solid.lower_mm = solid.upper_mm = boundary.solid.faces.vertices.front();
+  for (const geometry::Vec3& p : boundary.solid.faces.vertices) {
+    solid.lower_mm = solid.lower_mm.cwiseMin(p);
+    solid.upper_mm = solid.upper_mm.cwiseMax(p);
+  }
+  solid.upper_mm.z() = boundary.highest_mm;
+  solid.exact = std::move(boundary.solid);
+}
+
 /// Sets the boundary of a solid to that of a part, including the curved entrance face of the design if it has one.
-void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request) {
+void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& request, SolidEntrance model) {
   solid.elements_full = part.elements_full;
   solid.elements_partial = part.elements_partial;
   if (!solid.design.entrance) {
@@ -122,6 +143,13 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
   }
   const geometry::Entrance entrance = design::entrance_of_design(solid.design, part);
   try {
+    const auto* const surface = std::get_if<std::shared_ptr<const geometry::EntranceSurface>>(&entrance);
+    if (model == SolidEntrance::exact && surface != nullptr) {
+      set_exact_boundary(solid,
+                         geometry::exact_boundary(part, **surface, design::closed_form_of_entrance(solid.design, part),
+                                                  request.surface_error_mm.value_or(kSplineErrorMm)));
+      return;
+    }
     geometry::CurvedBoundary boundary =
         geometry::curved_boundary(part, entrance, request.surface_error_mm.value_or(kSurfaceErrorMm));
     solid.mesh = std::move(boundary.mesh);
@@ -135,12 +163,12 @@ void set_boundary(Solid& solid, const geometry::Part& part, const SolidRequest& 
 
 /// Returns the solid with its mesh, for a design that is read from a mesh file or consists of zones. Repairs of the
 /// mesh are reported in the warnings.
-Solid solid_of_mesh(Solid solid, const SolidRequest& request) {
+Solid solid_of_mesh(Solid solid, const SolidRequest& request, SolidEntrance model) {
   if (solid.what != SolidKind::array)
     design::require_supported(
         solid.design, {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
   if (solid.design.zoned() || solid.design.entrance) {
-    set_boundary(solid, design::part_of_design(solid.design, &solid.warnings), request);
+    set_boundary(solid, design::part_of_design(solid.design, &solid.warnings), request, model);
   } else {
     solid.mesh = geometry::boundary_of(design::mesh_of_design(solid.design, &solid.warnings));
   }
@@ -155,14 +183,14 @@ std::string name_of(SolidKind kind) {
   return std::string(kKinds[static_cast<std::size_t>(kind)]);
 }
 
-Solid make_solid(const design::Design& design, const SolidRequest& request) {
+Solid make_solid(const design::Design& design, const SolidRequest& request, SolidEntrance model) {
   requests::check(request);
   design::require_supported(design, {.what = "retrace export", .solids = true, .entrances = true, .wet_backs = true});
   Solid solid;
   solid.design = design;
   solid.what = kind_of(request.what);
   check_entrance(design, solid.what, request);
-  if (!design.elements()) return solid_of_mesh(std::move(solid), request);
+  if (!design.elements()) return solid_of_mesh(std::move(solid), request, model);
   const geometry::Part part = part_to_write(design, solid.what);
   if (solid.what == SolidKind::mould) {
     solid.elements_full = part.elements_full;
@@ -170,7 +198,7 @@ Solid make_solid(const design::Design& design, const SolidRequest& request) {
     solid.block_mm = request.block_mm.value_or(part.thickness_mm);
     solid.mesh = geometry::mould_boundary(part, solid.block_mm);
   } else {
-    set_boundary(solid, part, request);
+    set_boundary(solid, part, request, model);
   }
   measure(solid);
   add_warnings(solid);

@@ -69,8 +69,8 @@ class Sweep {
   std::optional<compute::UnitSamples> samples_;
 };
 
-/// Returns the inputs of a point as they are stored. These are the values of the parameters and, if the study has a
-/// level of accuracy, the members of ErrorLevel.
+/// Returns the inputs of a point for the store: the values of the parameters and, if Study::level is set, the members
+/// of ErrorLevel.
 std::vector<compute::StoredValue> stored_inputs(const Study& study, const PointValues& values);
 
 /// Computes one point of a study. An error is not thrown but recorded in the point. Returns nothing if the computation

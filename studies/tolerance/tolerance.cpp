@@ -1,4 +1,5 @@
 #include "studies/tolerance/tolerance.h"
+#include "studies/quantity/study_names.h"
 
 #include <fmt/format.h>
 
@@ -134,9 +135,8 @@ QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, con
 
 /// Returns true if a part satisfies a limit. A missing value violates every limit.
 bool holds(const Sweep& sweep, const compute::StoredPoint& part, const Constraint& limit) {
-  for (std::size_t k = 0; k < sweep.study().quantities.size(); ++k)
-    if (sweep.study().quantities[k]->name() == limit.quantity) return limit.violation(value_of(&part, k)) <= 0.0;
-  return false;
+  const std::optional<std::size_t> k = quantity_index(sweep.study(), limit.quantity);
+  return k && limit.violation(value_of(&part, *k)) <= 0.0;
 }
 
 void add_yields(const Sweep& sweep, const Finished& finished, const ToleranceRequest& request,

@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* kRangingTheory = "docs/theory/ranging.md";
 constexpr const char* kArnold = "Arnold and Appleby, Thermal-optical design of a geodetic satellite, abstract";
-/// Wavelength of common ranging lasers (frequency-doubled Nd:YAG), in nm. The index below is that of fused silica at
-/// this wavelength.
+/// Wavelength of frequency-doubled Nd:YAG lasers, which are common in laser ranging, in nm.
 constexpr double kGreenNm = 532.0;
+/// Refractive index of fused silica at this wavelength.
 constexpr double kSilica = 1.4607;
 constexpr const char* kSilicaBody = "refractive_index = 1.4607";
 /// Diameter of the cube corners of the satellite LAGEOS.
@@ -32,9 +32,9 @@ constexpr double kLageosMm = 38.1;
 constexpr double kUradPerRad = 1e6;
 constexpr double kArcsecOfUrad = 1e-6 * 3600.0 / closed_forms::kDeg;
 
-/// Returns a design of a cube corner with a circular face.
+/// Returns the design of a cube corner with a circular face.
 /// \param body keys of the table [body]
-/// \param additional tables of the design
+/// \param further additional tables of the design
 design::Design cube_of(double diameter_mm, const std::string& body, const std::string& further = {}) {
   return design::parse_design(
       fmt::format("schema = \"retrace.design/1\"\n[element]\nkind = \"round_icc\"\ndiameter_mm = {}\n[body]\n{}\n"
@@ -48,14 +48,14 @@ RangingResult ranging_of(const design::Design& design, RangingRequest request, c
   return RangingStudy(design, request).run(nullptr, cancel);
 }
 
-/// Returns the cross section exactly towards the source, divided by the cross section of a plane mirror with the same
-/// area.
+/// Returns the cross section in the direction to the source, divided by the cross section of a plane mirror with the
+/// same area.
 double relative_peak(const char* further, const Cancellation* cancel) {
   const RangingResult result = ranging_of(cube_of(kLageosMm, kSilicaBody, further), {}, cancel);
   return result.points.empty() ? 0.0 : result.points.front().centre.total / result.points.front().mirror_m2;
 }
 
-/// Returns the mean cross section on an annulus, in m2.
+/// Returns the mean cross section over an annulus of directions, in m2.
 double mean_on(const design::Design& design, double inner_urad, double outer_urad, const Cancellation* cancel) {
   RangingRequest request;
   request.aberration_arcsec = {inner_urad * kArcsecOfUrad, outer_urad * kArcsecOfUrad};
@@ -63,7 +63,8 @@ double mean_on(const design::Design& design, double inner_urad, double outer_ura
   return result.points.empty() ? 0.0 : result.points.front().annulus->total.mean;
 }
 
-/// Returns the cross section of a round mirror in a direction, in m2. The mirror is a polygon with 2000 corners.
+/// Returns the cross section of a circular plane mirror in m2, in a direction at the given angle from the source. The
+/// circle is approximated by a polygon with 2000 corners.
 double disc_cross_section(double diameter_mm, double urad) {
   const geometry::Part part = design::part_of_design(cube_of(diameter_mm, kSilicaBody), nullptr);
   raytrace::FarFieldPolicy policy;

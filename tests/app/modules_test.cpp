@@ -63,6 +63,15 @@ TEST_F(Modules, WithoutItsLibraryTheMessageNamesTheDebianPackage) {
   EXPECT_FALSE(fs::exists(folder_.path() / "out"));
 }
 
+TEST_F(Modules, WithoutTheReaderOfStepFilesTheMessageNamesIt) {
+  folder_.write("lens.step", "ISO-10303-21;\nEND-ISO-10303-21;\n");
+  folder_.write("s.toml", read_text(example("rtp_single_0p45mm.toml")) +
+                              "\n[entrance_surface]\nkind = \"step\"\nfile = \"lens.step\"\n");
+  const Outcome outcome = run("inspect s.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("retrace_step_reader"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Modules, TheProgramItselfNeedsNoneOfTheirLibraries) {
   const std::string program = read_text(RETRACE_PROGRAM);
   for (const char* library : {"libmpi", "libTKernel", "libOpenImageIO"})

@@ -38,7 +38,7 @@ void keep(const TemporaryFolder& folder, const Arguments& arguments, const Outco
   const char* kept = std::getenv("RETRACE_KEEP_RUNS");
   if (kept == nullptr) return;
   static int runs = 0;
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   const fs::path place = fs::path(kept) / test->test_suite_name() / test->name() / std::to_string(++runs);
   fs::create_directories(place);
   fs::copy(folder.path(), place / "files", fs::copy_options::recursive | fs::copy_options::copy_symlinks);
@@ -217,7 +217,7 @@ void expect_refused(const TemporaryFolder& folder, const std::vector<Refused>& c
   const std::vector<std::string> names = folder.names();
   for (const Refused& bad : cases) {
     const Arguments arguments = with(with(before, bad.arguments), after);
-    EXPECT_EQ(refused_at(retrace(folder, arguments)), bad.place) << testing::PrintToString(arguments);
+    EXPECT_EQ(refused_at(retrace(folder, arguments)), bad.place) << ::testing::PrintToString(arguments);
     EXPECT_EQ(folder.names(), names);
   }
 }

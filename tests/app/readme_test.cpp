@@ -316,7 +316,7 @@ std::string name_of(const testing::TestParamInfo<std::string>& tutorial) {
 // ctest runs every tutorial as a separate test (register_tests.py).
 INSTANTIATE_TEST_SUITE_P(Docs, Tutorials,
                          testing::Values("first_curve", "lamp", "measured_facet", "nc_program", "test_cuts", "ranging",
-                                         "regulation", "cluster"),
+                                         "regulation", "sheeting", "step_lens", "cluster"),
                          name_of);
 
 TEST(TutorialPages, AreAllFollowed) {
@@ -325,7 +325,7 @@ TEST(TutorialPages, AreAllFollowed) {
     names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names, (std::vector<std::string>{"cluster", "first_curve", "lamp", "measured_facet", "nc_program",
-                                             "ranging", "regulation", "test_cuts"}));
+                                             "ranging", "regulation", "sheeting", "step_lens", "test_cuts"}));
 }
 
 TEST(TutorialPages, AreReadStepByStep) {

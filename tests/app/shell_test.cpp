@@ -180,7 +180,8 @@ TEST_F(Shell, RaysPassThem) {
   EXPECT_GT(behind["ledger"]["shell_reflected"].get<double>(), 0.1);
 }
 
-// The light of the lamp crosses the four surfaces of the plate on its way to the part and back.
+// The light crosses the plate on its way to the part and on its way back, so it passes four surfaces of the plate in
+// total.
 TEST_F(Shell, CameraSeesThePartThroughThem) {
   const Arguments camera = {"image",          "design.toml", "--camera", "--observation-deg=0", "--no-diffraction",
                             "--pixels=40x30", "--passes=16"};
@@ -195,9 +196,18 @@ TEST_F(Shell, CameraSeesThePartThroughThem) {
   const Outcome outcome =
       retrace(folder_, {"image", "design.toml", "--camera", "--observation-deg=0", "--pixels=8x6", "--passes=2"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;  // the picture has no diffraction
+  EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;  // the warning states that the picture has no diffraction
   EXPECT_EQ(refusal(kEndless + kPlate, {"image", "design.toml", "--camera", "-o", "out"}),
             "design.toml:5: array.extent");
+}
+
+// The light of a headlamp crosses the four surfaces of the plate, at angles of incidence below a degree.
+TEST_F(Shell, RoadsShowThePartBehindThem) {
+  const Arguments road = {"image", "design.toml", "--road", "--road-distance-m=100"};
+  const auto r_a = [&](const std::string& design) {
+    return run(design, road)["views"][0]["reflectors"][0]["r_a_cd_per_lx_m2"][0].get<double>();
+  };
+  EXPECT_NEAR(r_a(kCubes + kPlate) / r_a(kCubes), std::pow(0.96, 4.0), 1e-3);
 }
 
 TEST_F(Shell, OthersRefuseThem) {
@@ -207,8 +217,7 @@ TEST_F(Shell, OthersRefuseThem) {
   EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
     EXPECT_EQ(refusal(kCubes + kLens, {"rre", "design.toml", option, "-o", "out"}), where);
-  for (const char* kind : {"--detector", "--road"})
-    EXPECT_EQ(refusal(design, {"image", "design.toml", kind, "-o", "out"}), where);
+  EXPECT_EQ(refusal(design, {"image", "design.toml", "--detector", "-o", "out"}), where);
   EXPECT_EQ(refusal(design, {"export", "design.toml", "out.stl"}), where);
   EXPECT_EQ(refusal(design, {"explore", "design.toml", "-o", "out.html"}), where);
   EXPECT_EQ(refusal(design, {"job", "design.toml", "--tool-width-mm=0.2", "-o", "job.toml"}), where);

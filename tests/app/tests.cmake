@@ -38,3 +38,6 @@ retrace_test(command_tests
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
 retrace_script_test(app/request_texts
   COMMAND "${RETRACE_PYTHON}" -B "${PROJECT_SOURCE_DIR}/tools/lib/request_texts.py" "$<TARGET_FILE:retrace>" --check)
+retrace_test(command_tests
+  SOURCES app/first_answers_test.cpp app/program.cpp support/refusals.cpp
+  LIBRARIES retrace::core nlohmann_json::nlohmann_json)

@@ -157,7 +157,7 @@ TEST_F(Store, WhatIsNoStoreOfThisStudyIsRefused) {
   EXPECT_EQ(message(changed, IfExists::resume), "");
 }
 
-/// If no point of a store has succeeded, the next run replaces the store, unless another process uses it.
+/// A store in which no point has succeeded is replaced by the next run, unless another process uses the store.
 TEST_F(Store, AStoreWithoutResultsIsReplaced) {
   StoredPoint failed = point(3);
   failed.failed = true;

@@ -41,3 +41,6 @@ retrace_test(fabrication_tests
 retrace_test(fabrication_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_faults_test.cpp ${CMAKE_CURRENT_LIST_DIR}/substrate_jobs_test.cpp
   LIBRARIES retrace::chisel_plan retrace::post retrace::chisel_check)
+retrace_test(fabrication_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/line_moves_test.cpp
+  LIBRARIES retrace::chisel_check)

@@ -1,6 +1,6 @@
-// Reads any bytes as a file of cubes. Text that begins with a letter "x" is read as a table (CSV), all other text as
-// TOML. The file is either read or refused with a message of one line. The axes of cubes that are read are unit
-// vectors, and all numbers are finite.
+// Reads arbitrary bytes as a file of cubes. Text that begins with the letter "x" is read as CSV, and all other text as
+// TOML. Each file must either be read or be refused with a message of one line. If a file is read, all numbers must be
+// finite, and all axes must be unit vectors.
 
 #include <cmath>
 #include <cstddef>

@@ -64,8 +64,8 @@ Place place_of(const std::string& path) {
 bool is_header(const std::string& path) {
   return path.ends_with(".h");
 }
-bool is_step_module(const std::string& path) {
-  return path == "geometry/io/step_module.cpp";
+bool uses_step_library(const std::string& path) {
+  return path == "geometry/io/step_module.cpp" || path.starts_with("geometry/io/step_program/");
 }
 bool in_io_room(const std::string& path) {
   return path.find("/io/") != std::string::npos;
@@ -101,11 +101,11 @@ const std::vector<Library>& libraries() {
        [](const std::string& path) { return path.starts_with("studies/optimise/") && !is_header(path); }},
       {"GLPK", "glpk", "compute/linear/linear_programme.cpp",
        [](const std::string& path) { return path == "compute/linear/linear_programme.cpp"; }},
-      {"OpenCASCADE", "STEPControl_", "geometry/io/step_module.cpp", is_step_module},
-      {"OpenCASCADE", "TopoDS", "geometry/io/step_module.cpp", is_step_module},
-      {"OpenCASCADE", "BRep", "geometry/io/step_module.cpp", is_step_module},
-      {"OpenCASCADE", "Geom_", "geometry/io/step_module.cpp", is_step_module},
-      {"OpenCASCADE", "gp_", "geometry/io/step_module.cpp", is_step_module},
+      {"OpenCASCADE", "STEPControl_", "geometry/io/step_module.cpp or geometry/io/step_program/", uses_step_library},
+      {"OpenCASCADE", "TopoDS", "geometry/io/step_module.cpp or geometry/io/step_program/", uses_step_library},
+      {"OpenCASCADE", "BRep", "geometry/io/step_module.cpp or geometry/io/step_program/", uses_step_library},
+      {"OpenCASCADE", "Geom_", "geometry/io/step_module.cpp or geometry/io/step_program/", uses_step_library},
+      {"OpenCASCADE", "gp_", "geometry/io/step_module.cpp or geometry/io/step_program/", uses_step_library},
       {"muParser", "muParser", "core/math/formula.cpp",
        [](const std::string& path) { return path == "core/math/formula.cpp"; }},
       {"OpenImageIO", "OpenImageIO/", "an io/ room", in_io_room},

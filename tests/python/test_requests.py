@@ -40,6 +40,11 @@ CALLS = {
         ["image", BRICK, "--road", "--mount=sign"],
     ),
     "metrology": (partial(rt.metrology, HEIGHTS), _core.MetrologyRequest, ["metrology", HEIGHTS]),
+    "inspect": (
+        partial(rt.inspect, BRICK, min_draft_deg=1.0),
+        _core.InspectRequest,
+        ["inspect", BRICK, "--min-draft-deg=1"],
+    ),
     "solid": (
         partial(rt.mesh, BRICK, what="mould"),
         _core.SolidRequest,

@@ -95,6 +95,28 @@ class Results(unittest.TestCase):
         with self.assertRaises(rt.InputError):
             rt.photometry(design, compare=design, **given)
 
+    def test_fields_of_cells_are_added(self):
+        given = {
+            "standard": "d4956",
+            "class_": "I",
+            "colour": "white",
+            "area_cm2": 100,
+            "light": "design",
+            "advice": False,
+        }
+        design = rt.Design.load(
+            program.example("honeycomb_infinite.toml"), {"element.aperture_mm": 0.15}
+        )
+        intensities = rt.photometry(design, **given)
+        self.assertNotIn("cell_interference", intensities.document)
+        fields = rt.photometry(design.replace({"array.depth_spread_nm": 10}), **given)
+        self.assertEqual(fields.document["cell_interference"]["depth_spread_nm"], 10)
+        self.assertFalse(
+            np.allclose(
+                fields.points.value_mcd_per_lx, intensities.points.value_mcd_per_lx, rtol=0.01
+            )
+        )
+
     def test_keys_that_are_left_out_are_nan(self):
         exact = rt.rre(program.example("honeycomb_infinite.toml"), incidence_deg=[0, 10])
         depths = [point.get("depth") for point in json.loads(exact.json)["points"]]

@@ -1,6 +1,5 @@
-// Tests of single cube corners with a circular face. Results are compared with closed forms for the effective aperture,
-// the mount and the chamfer. Results of beams are compared with rays, and results of round cube corners with hexagonal
-// cube corners.
+// Tests of single cube corners with a circular face. Closed forms give the effective aperture and the effects of mount
+// and chamfer. Results of beams are also compared with results of rays and of hexagonal cube corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +22,7 @@ using namespace raytrace;
 
 constexpr double kDiameter = 38.1;
 constexpr double kSilica = 1.4607;
-/// Maximum difference in area between an intersection of circles and the same intersection of polygons with 180 sides.
+/// Tolerance for areas of intersections. The reference uses circles, and the part uses polygons with 180 sides.
 constexpr double kPolygons = 2e-4;
 
 PartSpec part_of(const RoundCube& cube, double plate_mm = 0.86) {
@@ -34,7 +33,7 @@ double length_mm(const PartSpec& spec) {
   return element_depth_mm(spec.element) + spec.thickness_mm;
 }
 
-/// Returns optics without reflection at the face. Walls absorb all light, so that no light returns from the cylinder.
+/// Returns optics of an entrance face without reflection. Walls absorb all light, so the cylinder returns no light.
 Optics lossless(double index, bool has_mirrors) {
   Optics optics;
   optics.index = index;
@@ -64,7 +63,7 @@ double tan_deg(double angle_deg) {
   return std::tan(angle_deg * std::numbers::pi / 180.0);
 }
 
-/// Returns the largest cosine of the angles of incidence at the three mutually perpendicular facets.
+/// Returns the maximum cosine of the angle of incidence over the three facets, which are perpendicular to each other.
 double max_facet_cosine(double incidence_deg, double azimuth_deg, double index) {
   const double sine = std::sin(incidence_deg * std::numbers::pi / 180.0) / index;
   const double cosine = std::sqrt(1.0 - sine * sine);
@@ -76,14 +75,14 @@ double max_facet_cosine(double incidence_deg, double azimuth_deg, double index) 
   return most;
 }
 
-/// Centre of a disc after its projection onto the plane of the face, along the direction of the source.
+/// Centre of a disc, projected onto the plane of the entrance face along the direction to the source.
 struct CirclePosition {
   double at_mm;
   double radius_mm;
 };
 
-/// Returns the area of the region inside all discs, divided by the area of a circle. The area is computed by counting
-/// the points of a grid.
+/// Returns the area of the intersection of several discs, divided by the area of one disc. The area is determined by
+/// counting points of a grid.
 double common_area(const std::vector<CirclePosition>& discs, double radius_mm) {
   constexpr int kPoints = 800;
   const double step = 2.0 * radius_mm / kPoints;
@@ -105,7 +104,7 @@ TEST(RoundCube, FaceHasTheAreaOfTheCircle) {
   EXPECT_EQ(part.outline.size(), 180U);
   EXPECT_EQ(part.elements_full, 1);
   EXPECT_NEAR(part.element_depth_mm, kDiameter / std::numbers::sqrt2, 1e-12);
-  // The area of the facets follows from the area of the face, because all facets have the same inclination.
+  // All facets have the same inclination, so their area follows from the area of the entrance face.
   EXPECT_NEAR(part.retro_facet_area_mm2, std::numbers::sqrt3 * part.entrance_area_mm2, 1e-9);
 }
 
@@ -116,8 +115,9 @@ TEST(RoundCube, SolidsAreClosed) {
   expect_closed_part(errors);
 }
 
-// The region of the face that returns light is an intersection of two circles: the face, and its image in the apex. The
-// image is projected along the refracted light.
+// The light that returns enters through the intersection of two circles. The first circle is the entrance face. The
+// second circle is the point reflection of the entrance face in the apex, projected onto the face along the refracted
+// light.
 TEST(RoundCube, MirrorsReturnTheOverlapOfTwoCircles) {
   for (const double plate_mm : {1e-6, 0.86, 6.0}) {
     const PartSpec spec = part_of({kDiameter}, plate_mm);
@@ -132,8 +132,8 @@ TEST(RoundCube, MirrorsReturnTheOverlapOfTwoCircles) {
   }
 }
 
-// If the reflection at all facets is total, an uncoated cube corner returns the same fraction of the light as a cube
-// corner of mirrors. Otherwise, it returns less.
+// If the reflection at all facets is total, an uncoated cube corner returns the same fraction of light as a cube corner
+// with mirrors. Otherwise, the uncoated cube corner returns less light.
 TEST(RoundCube, TotalReflectionReturnsTheOverlapUpToItsLimit) {
   const PartSpec spec = part_of({kDiameter});
   const double critical = std::sqrt(1.0 - 1.0 / (kSilica * kSilica));
@@ -156,7 +156,7 @@ TEST(RoundCube, TotalReflectionReturnsTheOverlapUpToItsLimit) {
   EXPECT_GE(partial, 4);
 }
 
-// Without absorption, all light returns at normal incidence, even if the face reflects it several times.
+// Without absorption, all light returns at normal incidence, including light that the face reflects several times.
 TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
   Optics silica;
   silica.index = kSilica;
@@ -167,8 +167,9 @@ TEST(RoundCube, ReturnsAllLightAtNormalIncidence) {
   EXPECT_NEAR(ledger[Account::retroreflected], 1.0, 1e-6);
 }
 
-// Light crosses four discs: the edge of the mount and the face on its way in, and both again on its way out. Their
-// positions follow from the directions of the light in air and in the body.
+// The reference is the intersection of four discs that the light crosses: the edge of the mount and the face on its way
+// in, and the face and the edge on its way out. Their positions follow from the directions of the light in air and in
+// the body.
 TEST(RoundCube, MountReturnsTheCommonAreaOfItsDiscs) {
   for (const auto& [recess_mm, mount_mm, index] :
        {std::tuple{3.0, kDiameter, kSilica}, std::tuple{8.0, kDiameter, kSilica},
@@ -207,7 +208,7 @@ TEST(RoundCube, ChamferReducesTheFace) {
     EXPECT_GE(ledger[Account::stopped], 1.0 - ratio * ratio - 1e-12);
     EXPECT_NEAR(ledger.total(), 1.0, 1e-9);
   }
-  // The chamfer also returns no light by reflection at its outer side.
+  // The outer side of the chamfer must not return light by reflection either.
   Optics silica;
   silica.index = kSilica;
   const Ledger ledger = beams(spec, silica, from(0.0));
@@ -215,8 +216,8 @@ TEST(RoundCube, ChamferReducesTheFace) {
   EXPECT_NEAR(ledger[Account::retroreflected], ratio * ratio, 1e-6);
 }
 
-// Light that the outer side of the face reflects obeys the law of reflection. It does not return to the source like the
-// light of the cube corner.
+// The outer side of the face reflects light by the law of reflection. Unlike the light from the cube corner, this light
+// does not travel back to the source.
 TEST(RoundCube, MountStopsTheReflectionOfTheFace) {
   RoundCube cube{kDiameter};
   cube.recess_mm = 6.0;
@@ -268,8 +269,8 @@ TEST(RoundCube, BeamsAndRaysAgree) {
     }
 }
 
-// An entrance surface in the plane of the face has the same optical effect as the face. Other functions of the tracer
-// test its rays against the chamfer and the mount.
+// An entrance surface that coincides with the plane face must give the same results. For such a surface, other
+// functions of the tracer test whether rays meet the chamfer or the mount.
 TEST(RoundCube, AnEntranceSurfaceInThePlaneOfTheFaceChangesNothing) {
   RoundCube cube{kDiameter};
   cube.recess_mm = 4.0;
@@ -290,7 +291,7 @@ TEST(RoundCube, AnEntranceSurfaceInThePlaneOfTheFaceChangesNothing) {
   }
 }
 
-// If a hexagonal outline cuts the circular face, the result is a hexagonal cube corner.
+// A hexagonal outline cuts the circular face. The result must be equal to a hexagonal cube corner.
 TEST(RoundCube, WithAHexagonalOutlineIsTheHexagonalCube) {
   constexpr double kAperture = 10.0;
   std::vector<Vec2> corners;
@@ -311,8 +312,8 @@ TEST(RoundCube, WithAHexagonalOutlineIsTheHexagonalCube) {
     }
 }
 
-// A hollow cube corner is optically a cube corner with the index 1. Its effective aperture follows from the direction
-// of the light in air.
+// Light sees a hollow cube corner as a cube corner with the refractive index 1. Its effective aperture therefore
+// follows from the direction of the light in air.
 TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
   Optics hollow;
   hollow.mirror_facets = true;
@@ -322,13 +323,13 @@ TEST(RoundCube, HollowCubeReturnsTheOverlapInAir) {
     EXPECT_NEAR(ledger[Account::retroreflected],
                 overlap(0.5 * kDiameter, 2.0 * length_mm(spec) * tan_deg(incidence_deg)), kPolygons);
     EXPECT_EQ(ledger[Account::front_specular], 0.0);
-    // Light that misses a mirror leaves through the plane of the face or through the cylinder.
+    // Light that misses a mirror leaves through the plane of the face or through the side of the cylinder.
     EXPECT_NEAR(ledger[Account::retroreflected] + ledger[Account::side_exit] + ledger[Account::returned_elsewhere], 1.0,
                 1e-9);
   }
 }
 
-/// Returns the ledger of a single ray of power 1. Positions are relative to the centre of the face.
+/// Returns the ledger for a single ray of power 1. The position is relative to the centre of the face.
 RayLedger ray_through(const Part& part, const Vec3& position_mm, const Vec3& direction) {
   RayTracer tracer(part, nullptr, 0.5, {}, 1);
   IncidentRay ray;
@@ -349,11 +350,11 @@ TEST(RoundCube, MountStopsSingleRays) {
   const Vec3 down = -Vec3::UnitZ();
   EXPECT_NEAR(ray_through(part, {2.0, 1.0, 50.0}, down).ledger[Account::retroreflected], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {9.0, 0.0, 50.0}, down).ledger[Account::stopped], 1.0, 1e-12);
-  // A ray that starts between the face and the edge of the mount is stopped only on its way back.
+  // This ray starts between the face and the edge of the mount, so the mount can block it only on its way back.
   EXPECT_NEAR(ray_through(part, {9.0, 0.0, 1.0}, down).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {7.5, 0.0, 1.0}, down).ledger[Account::retroreflected], 1.0, 1e-12);
-  // The ray meets the face at x = -1 mm and leaves it near x = 7 mm. On its way back, it crosses the plane that
-  // contains the edge of the mount, at a point outside the circular edge.
+  // This ray meets the face at x = -1 mm and leaves it near x = 7 mm. On its way back, it crosses the plane of the
+  // mount's edge outside the circular opening.
   EXPECT_NEAR(ray_through(part, {14.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::stopped], 1.0, 1e-12);
   EXPECT_NEAR(ray_through(part, {15.0, 0.0, 50.0}, {-0.3, 0.0, -1.0}).ledger[Account::retroreflected], 1.0, 1e-12);
   EXPECT_EQ(ray_through(part, {30.0, 0.0, 50.0}, down).rays_missed, 1U);

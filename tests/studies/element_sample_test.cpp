@@ -1,4 +1,5 @@
-// Tests of the sample of elements and wavelengths. Estimated sums are compared with sums over all pairs.
+// Tests of sums over elements and wavelengths that are estimated from a sample. The reference is the sum over all pairs
+// of element and wavelength.
 #include "studies/photometry/element_sample.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ using raytrace::ElementPortion, studies::ElementSample, studies::SampledElement,
 
 constexpr std::size_t kColumns = 24, kRows = 16;
 
-/// Returns the portions of a rectangular array of elements. Elements at the border have smaller portions.
+/// Returns the portions of the elements of a rectangular array. Elements at the border have smaller portions.
 std::vector<ElementPortion> portions() {
   std::vector<ElementPortion> all;
   for (std::size_t j = 0; j < kRows; ++j)
@@ -36,10 +37,10 @@ std::vector<double> weights() {
   return {0.1, 0.2, 0.25, 0.2, 0.15, 0.05};
 }
 
-/// Reading of an element at a wavelength.
+/// Function that returns the reading of an element at a wavelength.
 using Reading = std::function<double(std::size_t element, std::size_t wavelength)>;
 
-/// Returns the sum of portion * weight * reading over all pairs.
+/// Returns the sum of portion * weight * reading over all pairs of element and wavelength.
 double whole_sum(const Reading& reading) {
   const std::vector<ElementPortion> all = portions();
   double sum = 0.0;
@@ -84,7 +85,8 @@ TEST(ElementSample, OmitsElementsWithoutLight) {
   }
 }
 
-// The fitted polynomials contain a constant and the terms of smooth(), so that the estimate is exact.
+// The estimate fits polynomials to the sample. These polynomials contain all terms of smooth(), so the estimate must be
+// exact.
 TEST(ElementSample, SumsOfPolynomialsAreExact) {
   for (const std::size_t count : {48U, 96U, 300U}) {
     const ElementSample sample(portions(), weights(), count);
@@ -99,8 +101,8 @@ TEST(ElementSample, SumsOfPolynomialsAreExact) {
   }
 }
 
-// Readings of elements deviate randomly from a smooth function of the position. The actual errors for many such parts
-// must have the spread that the reported standard errors predict.
+// The readings deviate randomly from a smooth function of the element's position. Over many such parts, the actual
+// errors of the estimate must be consistent with the reported standard errors.
 TEST(ElementSample, ErrorsHaveTheStatedSpread) {
   constexpr int kParts = 400;
   const ElementSample sample(portions(), weights(), 96);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "design/io/design_reader.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
@@ -111,6 +112,19 @@ TEST(FabricationRequests, ProgramsHaveAllowedFields) {
   EXPECT_EQ(refused(&FabricationRequest::stop_every, 0U), "stop_every");
   EXPECT_EQ(refused(&FabricationRequest::split_hours, 0.0), "split_hours");
   EXPECT_EQ(refused(&FabricationRequest::stop_every, 1U), "");
+}
+
+TEST(FabricationRequests, JobsOfRuledCellsAreRefused) {
+  const std::string text =
+      "[element]\nkind = \"ruled\"\n[grooves]\nform = \"equilateral\"\nspacing_mm = 0.1\n"
+      "[array]\nx_length_mm = 1\ny_length_mm = 1\n[body]\nthickness_mm = 0.5\n";
+  for (const char* strategy : {"bidirectional", "dmc"}) {
+    JobRequest request;
+    request.strategy = strategy;
+    request.tool_width_mm = 0.1;
+    EXPECT_EQ(refusal_of([&] { make_job(design::parse_design(text, "d.toml", {}), request); }),
+              "d.toml:2: element.kind");
+  }
 }
 
 }  // namespace

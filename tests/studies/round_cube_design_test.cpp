@@ -1,4 +1,4 @@
-// Tests of designs with `element.kind` = `"round_icc"`: keys, the resulting part, refused input, and photometry.
+// Tests of designs with `element.kind` = `"round_icc"`: keys, geometry of the part, refused input, and photometry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,14 +50,14 @@ TEST(RoundCubeDesign, LengthIsThatOfTheKeysOrTheMinimum) {
   EXPECT_GT(length_of(design()), min_mm);
   EXPECT_NEAR(length_of(design("length_mm = 19")), 19.0, 1e-12);
   EXPECT_NEAR(length_of(design("edge_length_mm = 33")), 33.0 / std::numbers::sqrt3, 1e-12);
-  // Angle errors move the highest points of the facets upwards. The entrance face must be above these points.
+  // Angle errors raise the highest points of the facets. The entrance face must be above these points.
   const design::Design raised = read(design("", "[surface]\ndihedral_error_arcmin = [20, -10, 5]\n"));
   EXPECT_GT(raised.part().thickness_mm, 0.01);
   EXPECT_NO_THROW(geometry::build_part(raised.part()));
 }
 
-/// At normal incidence, all light that meets the face of a cube corner comes back. The paths of the three-dimensional
-/// view begin on the face, not in the corners of its bounding box.
+/// At normal incidence, a cube corner returns all light that meets its face. Paths in the three-dimensional view must
+/// begin on the face, and not in the corners of its bounding box.
 TEST(RoundCubeDesign, PathsOfTheViewBeginOnTheFace) {
   const DesignScene scene = make_scene(
       read(design("", "[body]\nmaterial = \"fused-silica\"\n[light]\nwavelength_nm = 532\n")), {SceneLight{}});
@@ -107,6 +107,7 @@ TEST(RoundCubeDesign, DocumentsDescribeTheSamePart) {
     EXPECT_EQ(a.clear_face.size(), b.clear_face.size()) << text;
     EXPECT_EQ(a.mount.has_value(), b.mount.has_value()) << text;
     EXPECT_EQ(first.substance.refractive_index, second.substance.refractive_index) << text;
+    EXPECT_EQ(first.substance.is_hollow, second.substance.is_hollow) << text;
   }
 }
 
@@ -180,7 +181,7 @@ TEST(RoundCubeDesign, SymmetryEndsWithTheOutline) {
       design::azimuth_symmetry(read(design("", "[outline]\npolygon_mm = [[0, 0], [10, 0], [10, 10], [0, 10]]\n"))));
 }
 
-// If an outline cuts a round cube corner to a hexagon, its far field is equal to the far field of a hexagonal cube
+// An outline cuts a round cube corner to a hexagon. Its far field must be equal to the far field of a hexagonal cube
 // corner.
 TEST(RoundCubeDesign, PhotometryIsThatOfAHexagonalCubeIfTheFaceIsAHexagon) {
   constexpr double kAperture = 2.0;

@@ -35,3 +35,10 @@ retrace_test(studies_tests
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_sample_test.cpp
   LIBRARIES retrace::photometry retrace::photometry_by_rays retrace::rre)
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/ruled_design_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../geometry/ruled_pattern_test.cpp
+          support/key_table.cpp support/refusals.cpp support/reference_tracer.cpp
+  LIBRARIES retrace::photometry retrace::inspect retrace::rre retrace::geometry_check retrace::geometry_io Boost::headers rapidcheck nlohmann_json::nlohmann_json)
+retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_interference_test.cpp support/refusals.cpp
+  LIBRARIES retrace::photometry nlohmann_json::nlohmann_json)

@@ -176,8 +176,7 @@ inline double measured_of(const fabrication::Cavity& groove, const fabrication::
   switch (what) {
     case studies::FacetQuantity::tilt_up:
       return -kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
-    case studies::FacetQuantity::tilt_along:
-      return -kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
+    case studies::FacetQuantity::tilt_along: return -kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
     default: return 1e6 * normal.dot(point - fabrication::facet_centre(groove, facet)) / normal.dot(design.normal);
   }
 }

@@ -31,7 +31,8 @@ MOST_LINES = 200  # maximum number of lines of a file that are shown
 # are not named individually. A dictionary within a section is a second level of the navigation.
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
-    "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/lamp.md", "docs/tutorials/ranging.md",
+    "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/sheeting.md", "docs/tutorials/lamp.md", "docs/tutorials/step_lens.md",
+                  "docs/tutorials/ranging.md",
                   "docs/tutorials/nc_program.md", "docs/tutorials/test_cuts.md", "docs/tutorials/measured_facet.md", "docs/tutorials/cluster.md",
                   "docs/tutorials/*.md"],
     "Notebooks": ["examples/notebooks/*.md"],

@@ -7,6 +7,7 @@
 
 #include "core/number_format.h"
 #include "fabrication/chisel/plan/process_facts.h"
+#include "fabrication/job/tool_limits.h"
 
 namespace retrace::fabrication {
 namespace {
@@ -17,7 +18,6 @@ using geometry::Vec2;
 constexpr double kWholeTolerance = 1e-9;
 /// Maximum number of cuts per facet. A larger number indicates that the depth of cut is given in a wrong unit.
 constexpr int kMaxCuts = 100'000;
-constexpr double kFitToleranceMm = 1e-6;
 
 /// Builds the moves of a subroutine from points of the section, rounded to whole increments.
 class SectionPath {

@@ -20,6 +20,7 @@
 #include "fabrication/job/io/job_outline.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/job/substrate_cells.h"
+#include "fabrication/job/tool_limits.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/job/zone_cells.h"
 #include "geometry/elements/substrate_checks.h"
@@ -46,8 +47,6 @@ constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
 /// Maximum number of elements. It limits the memory of a plan, which needs about 1 KiB per element.
 constexpr double kMaxElements = 2e6;
 constexpr std::size_t kMaxZoneElements = 2'000'000;
-/// Tolerance, in mm, of the check that the tool is not wider than the element.
-constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMaxChips = 100;
 /// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves through the
 /// gap between them. The value is an assumption: if the angle between the facets is 90, the wedge angle 50 and the
@@ -232,7 +231,7 @@ constexpr Row kChipRows[] = {
      "Depth of the chip, normal to the clearance face. It is above 0 and at most half of the width.",
      access<&EdgeChip::depth_um>}};
 constexpr Row kToolRows[] = {
-    {"width_mm", Number{{.low = 0.1, .high = 2.0}}, kRequired,
+    {"width_mm", Number{{.low = kMinToolWidthMm, .high = kMaxToolWidthMm}}, kRequired,
      "Length of the chisel's cutting edge, at most the width of the element.", access<&Tool::width_mm>, kOfChisels},
     {"width_mm", Number{{.low = 0.01, .high = 10.0}}, kRequired,
      "Distance between the outer ends of the two cutting edges of the V-shaped tool. The cutting edges must reach from "
@@ -262,7 +261,7 @@ constexpr Row kToolRows[] = {
      "Clearance angle of the chisel's side walls, by which the diamond narrows towards its shank. It must be small "
      "enough that the diamond does not end in a point within the depth of the element.",
      access<&Tool::side_clearance_deg>, kOfChisels},
-    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
+    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = kMaxEdgeLifeMm}}, kNone,
      "Tool life of a cutting edge: maximum length of the tip's path below the face of the blank, along plunges and "
      "ploughs. For a V-shaped tool, the path goes down and up the dihedral edges.",
      access_given<&Tool::edge_life_mm>},

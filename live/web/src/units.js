@@ -32,10 +32,11 @@ export function percent(fraction, decimals = 2) {
   return fraction == null ? "–" : `${(100 * fraction).toFixed(decimals).replace("-", "−")} %`;
 }
 
-/** Formats an angle in degrees, or in minutes of arc if it is small. */
+/** Formats an angle in degrees, or in minutes or seconds of arc if it is small. */
 export function angle(deg) {
   if (deg === 0) return "0°";
   const size = Math.abs(deg);
   if (size < 1e-6) return "0°";
+  if (size < 1 / 60) return `${short(3600 * deg, 3)}″`;
   return size < 0.5 ? `${short(60 * deg, 3)}′` : `${short(deg, 4)}°`;
 }

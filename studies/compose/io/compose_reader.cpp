@@ -10,6 +10,8 @@
 #include "studies/compose/cell_errors.h"
 #include "studies/quantity/io/constraint_reader.h"
 #include "studies/quantity/io/study_reader.h"
+#include "studies/quantity/machining_limits.h"
+#include "studies/quantity/study_names.h"
 
 namespace retrace::studies {
 namespace {
@@ -30,8 +32,7 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
 /// \return name of the quantity, as returned by checked_quantity()
 std::string checked_mean(const Study& study, const std::string& given, const InputLocation& where) {
   const std::string name = checked_quantity(study, given, where);
-  const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
-  if (!(*found)->is_additive())
+  if (!quantity_named(study, name)->is_additive())
     throw InputError(where,
                      fmt::format("{} is the minimum of several values, which cannot be averaged over zones: make each "
                                  "value a quantity with points = \"each_reading\" or over_directions = \"each\"",
@@ -77,6 +78,14 @@ void check_parameters(const Study& study) {
                        "a distribution is not allowed in a composition: give values, or from and to");
 }
 
+/// Returns the constraints on cells, and the constraints that follow from the tool and the machine of the study. A
+/// constraint on the mean over the part does not replace a limit, because each cell must be machined.
+std::vector<Constraint> cell_constraints_of(const Study& study) {
+  std::vector<Constraint> constraints = read_constraints(study, ConstraintOver::cell);
+  add_machining_limits(study, constraints);
+  return constraints;
+}
+
 /// Checks that each cell has only one kind of element. Cells that cannot be made are accepted here; the search reports
 /// them as failed points.
 void check_cells(const Study& study) {
@@ -118,7 +127,7 @@ ComposeRequest read_compose(const Study& study) {
   check_cells(study);
   ComposeRequest request;
   request.goals = read_goals(document, study);
-  request.cell_constraints = read_constraints(study, ConstraintOver::cell);
+  request.cell_constraints = cell_constraints_of(study);
   request.part_constraints = read_constraints(study, ConstraintOver::part);
   for (const Constraint& constraint : request.part_constraints)
     checked_mean(study, constraint.quantity, document.where("constraint"));

@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "studies/compose/goals.h"
 #include "studies/compose/io/error_effects_files.h"
+#include "studies/quantity/io/study_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -99,8 +100,7 @@ void add_part(const Study& study, const ComposeRequest& request, const Compositi
 
 std::string composition_json(const Study& study, const ComposeRequest& request, const Composition& composition,
                              double elapsed_s) {
-  Json json = {{"study", study.source}};
-  if (!study.title.empty()) json["title"] = study.title;
+  Json json = begin_document(study);
   if (composition.best) add_part(study, request, composition, json);
   if (const std::string why = why_not_reached(study, request, composition); !why.empty()) json["not_reached"] = why;
   if (composition.single)

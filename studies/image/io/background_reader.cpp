@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/pictures.h"
 #include "core/srgb.h"
+#include "core/text.h"
 
 namespace retrace::studies {
 namespace {
@@ -62,7 +63,7 @@ Background read_background(const std::filesystem::path& file, Field field) {
     if (size.columns * size.rows > kMaxPixels)
       throw std::runtime_error(
           fmt::format("it has {} x {} pixels, at most {} are allowed", size.columns, size.rows, kMaxPixels));
-    return file.extension() == ".exr" ? luminances(files.read_floats(file)) : photograph(files.read(file));
+    return ending_of(file) == ".exr" ? luminances(files.read_floats(file)) : photograph(files.read(file));
   } catch (const std::runtime_error& error) {
     throw InputError(field, fmt::format("must be a picture that can be read (PNG, JPEG, OpenEXR), {}: {}",
                                         file.string(), error.what()));

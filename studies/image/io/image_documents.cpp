@@ -58,6 +58,9 @@ std::string detector_json(const DetectorResult& result) {
                     {"has_diffraction", result.has_diffraction},
                     {"columns", result.request.angle_pixels},
                     {"rows", result.request.angle_pixels}};
+  if (const design::CellSpread* const spread = result.has_diffraction ? result.design.cell_spread() : nullptr)
+    json["angles"]["cell_interference"] = {{"depth_spread_nm", spread->depth_nm},
+                                           {"spacing_spread_nm", spread->spacing_nm}};
   if (result.has_maps()) {
     json["angles"]["outside"] = result.maps.outside;
     json["rre"] = result.maps.rre;

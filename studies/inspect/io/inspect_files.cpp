@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "design/io/design_json.h"
+#include "studies/inspect/io/step_face_texts.h"
 
 namespace retrace::studies {
 namespace {
@@ -106,6 +109,46 @@ std::string form_text(const Inspection& i) {
                      fixed(i.form->lowest_um, 4), fixed(i.form->highest_um, 4), fixed(i.form->rms_um, 4),
                      fixed(i.form->steepest_mrad, 3),
                      i.form->tilt_mrad > 1e-6 ? fmt::format(", tilted by {} mrad", fixed(i.form->tilt_mrad, 3)) : "");
+}
+
+/// Returns the lines of the report about the cells of a ruled array.
+std::string ruled_text(const Inspection& i) {
+  constexpr std::size_t kMaxLines = 12;
+  if (!i.ruled) return {};
+  std::string text = fmt::format("  ruled cells         {} {}\n", i.ruled->cells.size(),
+                                 i.ruled->is_period ? "per period" : "around the origin; the grooves have no period");
+  for (std::size_t k = 0; k < std::min(kMaxLines, i.ruled->cells.size()); ++k) {
+    const RuledCellReport& cell = i.ruled->cells[k];
+    const auto angles = [](const std::array<double, 3>& deg, int digits) {
+      return fmt::format("{} {} {}", fixed(deg[0], digits), fixed(deg[1], digits), fixed(deg[2], digits));
+    };
+    std::string line = fmt::format("{} faces", cell.faces);
+    if (cell.dihedral_deg) line += fmt::format(", dihedral angles {}", angles(*cell.dihedral_deg, 4));
+    if (cell.cant_deg)
+      line += fmt::format(", cant {} towards {}", fixed(*cell.cant_deg, 3), fixed(cell.cant_azimuth_deg, 1));
+    if (cell.base_deg) line += fmt::format(", base {}", angles(*cell.base_deg, 3));
+    text += fmt::format("  {:<20}{} degrees; effective aperture {} %, truncated {} %\n", fmt::format("cell {}", k + 1),
+                        line, fixed(100.0 * cell.effective_aperture, 2), fixed(100.0 * cell.truncated_fraction, 2));
+  }
+  if (i.ruled->cells.size() > kMaxLines)
+    text += fmt::format("  {:<20}{} more cells are in the JSON document\n", "", i.ruled->cells.size() - kMaxLines);
+  return text;
+}
+
+nlohmann::ordered_json ruled_json(const RuledReport& report) {
+  nlohmann::ordered_json cells = nlohmann::ordered_json::array();
+  for (const RuledCellReport& cell : report.cells) {
+    nlohmann::ordered_json json = {{"area_mm2", cell.area_mm2}, {"faces", cell.faces}};
+    if (cell.dihedral_deg) json["dihedral_deg"] = *cell.dihedral_deg;
+    if (cell.cant_deg) json["cant_deg"] = *cell.cant_deg;
+    if (cell.cant_deg) json["cant_azimuth_deg"] = cell.cant_azimuth_deg;
+    if (cell.base_deg) json["base_deg"] = *cell.base_deg;
+    json["effective_aperture"] = cell.effective_aperture;
+    json["truncated_fraction"] = cell.truncated_fraction;
+    json["bottom_fraction"] = cell.bottom_fraction;
+    cells.push_back(json);
+  }
+  return {{"is_period", report.is_period}, {"cells", cells}};
 }
 
 std::string entrance_text(const Inspection& i) {
@@ -233,6 +276,88 @@ nlohmann::ordered_json wet_back_json(const Inspection& i) {
   return json;
 }
 
+/// Returns the name of faces with a role in documents.
+std::string_view face_name(geometry::FacetRole role) {
+  switch (role) {
+    case geometry::FacetRole::entrance: return "entrance";
+    case geometry::FacetRole::retro_facet: return "retro_facet";
+    case geometry::FacetRole::flat_back: return "flat_back";
+    case geometry::FacetRole::inner_wall: return "inner_wall";
+    case geometry::FacetRole::border_wall: return "border_wall";
+    case geometry::FacetRole::side: break;
+  }
+  return "side";
+}
+
+nlohmann::ordered_json position_json(const geometry::Vec3& p) {
+  return nlohmann::ordered_json::array({p.x(), p.y(), p.z()});
+}
+
+/// Smallest, mean and largest angle between the axes of the elements and the normal of the entrance face.
+struct PinAngles {
+  double min_deg = 180.0;
+  double mean_deg = 0.0;
+  double max_deg = 0.0;
+};
+
+PinAngles pin_angles(const ToolReport& tool) {
+  PinAngles angles;
+  for (const PinAxis& pin : tool.pin_axes) {
+    angles.min_deg = std::min(angles.min_deg, pin.angle_deg());
+    angles.max_deg = std::max(angles.max_deg, pin.angle_deg());
+    angles.mean_deg += pin.angle_deg() / static_cast<double>(tool.pin_axes.size());
+  }
+  return angles;
+}
+
+nlohmann::ordered_json tool_json(const ToolReport& tool) {
+  nlohmann::ordered_json draft = nlohmann::ordered_json::array();
+  for (const DraftOfFaces& of : tool.draft)
+    draft.push_back({{"faces_of", face_name(of.role)},
+                     {"faces", of.faces},
+                     {"area_mm2", of.area_mm2},
+                     {"min_draft_deg", of.min_draft_deg},
+                     {"below_limit", of.below_limit},
+                     {"undercuts", of.undercuts},
+                     {"undercut_mm2", of.undercut_mm2}});
+  nlohmann::ordered_json json = {{"min_wall_mm", tool.wall.thickness_mm},
+                                 {"min_wall_back_mm", position_json(tool.wall.back_mm)},
+                                 {"min_wall_entrance_mm", position_json(tool.wall.entrance_mm)},
+                                 {"demoulding", position_json(tool.demoulding)},
+                                 {"min_draft_deg", tool.min_draft_deg()},
+                                 {"below_limit", tool.below_limit()},
+                                 {"undercuts", tool.undercuts()},
+                                 {"draft", draft},
+                                 {"optical_area_fraction", tool.optical_area_fraction}};
+  if (!tool.pin_axes.empty()) {
+    const PinAngles angles = pin_angles(tool);
+    json["pin_axes"] = {{"pins", tool.pin_axes.size()},
+                        {"min_deg", angles.min_deg},
+                        {"mean_deg", angles.mean_deg},
+                        {"max_deg", angles.max_deg}};
+  }
+  return json;
+}
+
+/// Returns the lines of the report for the toolmaker.
+std::string tool_text(const Inspection& i) {
+  if (!i.tool) return {};
+  const ToolReport& tool = *i.tool;
+  const auto steepest = std::ranges::min_element(tool.draft, {}, &DraftOfFaces::min_draft_deg);
+  std::string text = fmt::format("  smallest wall       {} mm at x = {}, y = {} mm\n", fixed(tool.wall.thickness_mm, 6),
+                                 fixed(tool.wall.back_mm.x(), 4), fixed(tool.wall.back_mm.y(), 4));
+  text +=
+      fmt::format("  smallest draft      {} degrees ({}); {} faces below the limit, {} undercuts\n",
+                  fixed(steepest->min_draft_deg, 3), face_name(steepest->role), tool.below_limit(), tool.undercuts());
+  text += fmt::format("  optical area        {} % of the plan\n", fixed(100.0 * tool.optical_area_fraction, 3));
+  if (!tool.pin_axes.empty()) {
+    const PinAngles angles = pin_angles(tool);
+    text += fmt::format("  element axes        {} to {} degrees from the normal of the entrance surface\n",
+                        fixed(angles.min_deg, 3), fixed(angles.max_deg, 3));
+  }
+  return text;
+}
+
 std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, min_radius_mm] = i.substrate->measures;
@@ -335,11 +460,14 @@ std::string inspect_json(const Inspection& i) {
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
   if (i.design.elements()) json["dead_zone_fraction"] = i.dead_zone_fraction;
+  if (i.ruled) json["ruled"] = ruled_json(*i.ruled);
   if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
+  add_step_faces(i.design, json);
   if (i.shells) json["shells"] = shells_json(i);
   if (i.form) json["form"] = form_json(*i.form);
+  if (i.tool) json["tool"] = tool_json(*i.tool);
   json["boundary"] = i.boundary;
   return result_text("retrace.inspect/2", json, i.warnings);
 }
@@ -352,11 +480,13 @@ std::string mesh_text(const Inspection& i) {
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
   text += entrance_text(i);
+  text += step_faces_text(i.design);
   text += shells_text(i);
   text += fmt::format("  entrance area       {} mm2\n", fixed(i.entrance_area_mm2, 4));
   text += fmt::format("  retro facet area    {} mm2\n", fixed(i.facet_area_mm2, 4));
   text += light_text(i);
   text += coatings_text(i);
+  text += tool_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
 }
@@ -391,8 +521,10 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
   text += fmt::format("  full elements       {} % of the area\n", fixed(100.0 * i.full_element_area_fraction, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
+  text += ruled_text(i);
   text += substrate_text(i);
   text += entrance_text(i);
+  text += step_faces_text(i.design);
   text += shells_text(i);
   text += form_text(i);
   text += light_text(i);
@@ -400,8 +532,27 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += wet_back_text(i);
   text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_fraction, 3));
+  text += tool_text(i);
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
+}
+
+std::string pin_axes_csv(const Inspection& i) {
+  if (!i.tool || i.tool->pin_axes.empty()) return {};
+  CsvWriter csv("x_mm,y_mm,angle_deg,azimuth_deg,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z");
+  for (const PinAxis& pin : i.tool->pin_axes)
+    csv.row(pin.centre_mm.x(), pin.centre_mm.y(), pin.angle_deg(), pin.azimuth_deg(), pin.axis.x(), pin.axis.y(),
+            pin.axis.z(), pin.normal.x(), pin.normal.y(), pin.normal.z());
+  return csv.text();
+}
+
+std::string draft_csv(const Inspection& i) {
+  if (!i.tool || i.tool->steep_faces.empty()) return {};
+  CsvWriter csv("faces_of,draft_deg,area_mm2,x_mm,y_mm,z_mm");
+  for (const SteepFace& face : i.tool->steep_faces)
+    csv.row(face_name(face.role), face.draft_deg, face.area_mm2, face.centroid_mm.x(), face.centroid_mm.y(),
+            face.centroid_mm.z());
+  return csv.text();
 }
 
 }  // namespace retrace::studies

@@ -60,19 +60,10 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
   return keys;
 }
 
-/// Returns the constraints of the study, and the constraints that follow from its tool and its machine. If the study
-/// constrains a quantity, this constraint replaces the limit of the tool or the machine.
+/// Returns the constraints of the study, and the constraints that follow from its tool and its machine.
 std::vector<Constraint> constraints_of(const Study& study) {
   std::vector<Constraint> constraints = read_constraints(study);
-  const std::size_t given = constraints.size();
-  for (const Constraint& limit : machining_limits(study)) {
-    const auto is_given = [&](const Constraint& constraint) { return constraint.quantity == limit.quantity; };
-    const bool is_computed =
-        std::ranges::any_of(study.quantities, [&](const auto& quantity) { return quantity->name() == limit.quantity; });
-    if (is_computed &&
-        std::ranges::none_of(constraints.begin(), constraints.begin() + static_cast<std::ptrdiff_t>(given), is_given))
-      constraints.push_back(limit);
-  }
+  add_machining_limits(study, constraints);
   return constraints;
 }
 

@@ -7,6 +7,7 @@
 #include "core/csv.h"
 #include "core/json_text.h"
 #include "design/io/design_document.h"
+#include "studies/quantity/io/study_json.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
@@ -28,7 +29,7 @@ Json variant_json(const Study& study, const Variant& variant) {
   return json;
 }
 
-/// Returns an evaluated design as JSON. The key `feasible` states whether it satisfies all constraints.
+/// Returns an evaluated design as JSON. The key `feasible` is true if the design satisfies all constraints.
 Json design_json(const Study& study, const Variant& variant) {
   Json json = variant_json(study, variant);
   json["feasible"] = variant.feasible();
@@ -62,8 +63,7 @@ Json band_json(const ToleranceBand& band) {
 }  // namespace
 
 std::string optimum_json(const Study& study, const OptimiseRequest& request, const Optimum& optimum, double elapsed_s) {
-  Json json = {{"study", study.source}};
-  if (!study.title.empty()) json["title"] = study.title;
+  Json json = begin_document(study);
   json["objective"] = Json::object();
   for (const auto& [name, weight] : request.objective.weights) json["objective"][name] = weight;
   json["constraints"] = Json::array();
@@ -86,7 +86,7 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   json["designs"] = Json::array();
   for (const Variant& variant : optimum.designs) json["designs"].push_back(design_json(study, variant));
   json["refined_by"] = optimum.method;
-  json["evaluations"] = optimum.evaluations;
+  json["evaluations"] = optimum.designs.size();
   json["seed"] = study.seed;
   json["elapsed_s"] = elapsed_s;
   return result_text("retrace.optimum/1", json, {}, optimum.complete);
@@ -176,7 +176,7 @@ std::string optimum_text(const Study& study, const OptimiseRequest& request, con
         fmt::format("range for a loss of {:g} % of {}:  {} = {:.9g}  - {}  + {}\n", 100.0 * request.band_loss,
                     request.objective.weights.front().first, band.key, band.nominal, side(band.down), side(band.up));
   }
-  text += fmt::format("{} designs evaluated, {} on the Pareto front; refinement: {}\n", optimum.evaluations,
+  text += fmt::format("{} designs evaluated, {} on the Pareto front; refinement: {}\n", optimum.designs.size(),
                       optimum.front.size(), optimum.method);
   return text;
 }

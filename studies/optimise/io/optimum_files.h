@@ -14,17 +14,17 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
 /// Returns the Pareto front as CSV, with one line for each design.
 std::string front_csv(const Study& study, const Optimum& optimum);
 
-/// Returns all evaluated designs as CSV, with one line for each design. The columns contain the parameters, the
-/// quantities with their standard errors, and the objective. The last two columns state whether the design satisfies
-/// all constraints and, if it does not, the reason.
+/// Returns all evaluated designs as CSV, one line per design. The columns contain the parameters, the quantities with
+/// their standard errors, and the objective. The last two columns state whether the design satisfies all constraints,
+/// and the reason if it does not.
 std::string designs_csv(const Study& study, const Optimum& optimum);
 
-/// Returns the text of the design file of a variant.
-/// \param comment text of the comment lines at its beginning
+/// Returns the text of a design file for an evaluated design.
+/// \param comment text of the comment lines at the beginning of the file
 /// \throw InputError if the design is invalid
 std::string variant_design_text(const Study& study, const Variant& variant, const std::string& comment);
 
-/// Returns the parameters and the objective of a design in one short line, such as "rre = 0.9538 at size_mm = 1".
+/// Returns the objective and the parameters of a design in one short line, such as "rre = 0.9538 at size_mm = 1".
 std::string short_text(const Study& study, const OptimiseRequest& request, const Variant& variant);
 
 /// Returns the chosen design, its alternatives and its tolerance bands for the terminal.

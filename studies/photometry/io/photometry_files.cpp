@@ -246,6 +246,16 @@ Json entrance_model_json(const EntranceModel& model) {
           {"allowed_angle_arcmin", model.allowed_angle_arcmin}};
 }
 
+/// Returns the spread of the cells if the fields of different cells are added, or null if their intensities are added.
+const design::CellSpread* interfering_cells(const PhotometryResult& result) {
+  return result.has_diffraction ? result.design.cell_spread() : nullptr;
+}
+
+std::string cells_text(const design::CellSpread& spread) {
+  return fmt::format("the fields of cells are added: spread of their depths {} nm, of their positions {} nm\n",
+                     shortest(spread.depth_nm), shortest(spread.spacing_nm));
+}
+
 std::string entrance_model_text(const EntranceModel& model) {
   return fmt::format(
       "curved entrance surface: tangent planes of {} of {} elements; differences from rays: paths {} wavelengths "
@@ -277,6 +287,8 @@ std::string photometry_json(const PhotometryResult& result) {
   if (result.complete || !result.points.empty()) json["verdict"] = verdict_name(result.verdict);
   if (!result.reason.text.empty()) json["reason"] = result.reason.text;
   if (result.entrance_model) json["entrance_model"] = entrance_model_json(*result.entrance_model);
+  if (const design::CellSpread* const spread = interfering_cells(result))
+    json["cell_interference"] = {{"depth_spread_nm", spread->depth_nm}, {"spacing_spread_nm", spread->spacing_nm}};
   if (result.colour) json["chromaticity"] = colour_json(*result.colour);
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
@@ -435,6 +447,7 @@ std::string photometry_table(const PhotometryResult& result, std::size_t max_row
   table += rows_of(result.points, max_rows);
   table += areas_text(result.request);
   if (result.entrance_model) table += entrance_model_text(*result.entrance_model);
+  if (const design::CellSpread* const spread = interfering_cells(result)) table += cells_text(*spread);
   if (result.colour) table += colour_text(*result.colour);
   if (!result.points.empty()) table += verdict_text(result.verdict, test_plan, result.reason.text);
   if (result.change) table += change_text(*result.change, test_plan, max_rows);

@@ -2,6 +2,7 @@
 
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
+#include "fabrication/job/tool_limits.h"
 #include "raytrace/engines/engine.h"
 #include "raytrace/light/ledger.h"
 #include "studies/quantity/machining.h"
@@ -256,7 +257,7 @@ constexpr Row kMachiningRows[] = {
      "Radius of the tool's cutting edge. It is also the radius of the roots, unless the design or the study gives "
      "`surface.root_radius_um`.",
      access<&Process::edge_radius_um>},
-    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
+    {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = fabrication::kMaxEdgeLifeMm}}, kNone,
      "Tool life of an edge: its maximum path length in the material. It has an effect only together with `machine`.",
      access_by<edge_life, set_edge_life>},
     {"limits", Word{kLimitsHold}, "hold",
@@ -305,10 +306,12 @@ constexpr Row kOptimiseRows[] = {
     {"scan", Integer{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
      "designs are equally spaced from end to end of its interval. For several continuous parameters, they are the "
-     "corners of the intervals and Sobol points. Sizes of prisms are moved to the nearest sizes that divide the part."},
+     "corners of the intervals and Sobol points. Sizes of prisms are changed to the nearest sizes with which the part "
+     "contains whole prisms only."},
     {"rounding", Word{kRoundings}, "drawing",
-     "Rounding of continuous parameters in the result. `\"drawing\"`: the roundest values whose objective cannot be "
-     "distinguished from the best one, preferably sizes that divide the part. `\"none\"`: no rounding."},
+     "Rounding of continuous parameters in the result. `\"drawing\"`: the values with the fewest digits whose "
+     "objective cannot be distinguished from the best one, preferably sizes with which the part contains whole "
+     "elements only. `\"none\"`: no rounding."},
     {"bands_of", Texts{}, kNone,
      "Keys of the design, or keys of parameters of the study, for which tolerance bands are computed."},
     {"band_loss_percent", Number{{.low = 0.0, .low_included = false, .high = 100.0}}, 1.0,
@@ -352,7 +355,8 @@ constexpr Row kComposeRows[] = {
                                "Minimum fraction of the area for each zone of the part."}),
     renamed("most_share", Row{"max_area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
                               "Maximum fraction of the area for each zone."}),
-    {"area_fraction_step", Number{{.low = 0.001, .high = 0.5}}, kNone,
+    {"area_fraction_step", Number{{.low = 0.001, .high = 0.5}},
+     Computed{"the largest of 0.1, 0.05, 0.02, ... 0.001 that lowers the merit by less than its standard error"},
      "Step of the area fractions of the best part, such as 0.01 or 0.05: each fraction is a multiple of it."},
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
      "Prices of quantities. The merit of a part is the minimum of all goals, minus the price for each unit of the "

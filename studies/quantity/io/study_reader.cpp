@@ -82,15 +82,16 @@ void check_settings_have_effect(const Document& document, const Study& study) {
                                in_quotes(document.text("analysis.engine"))));
 }
 
-/// Returns the name of a machine or a process. If the name has an extension, it is a file name relative to the folder
-/// of the study.
+/// Returns the machine or the process that a key names. A name with an extension is a file, relative to the folder of
+/// the study.
 std::string name_or_file(const Document& document, const std::string& key) {
   const fs::path name = document.text_if(key);
   if (!name.has_extension() || name.is_absolute()) return name.string();
   return (fs::path(document.source()).parent_path() / name).string();
 }
 
-/// Sets values that [machining] does not give to the values of the process that [machining] names.
+/// Replaces default values by values of the process that [machining] names. Values that [machining] itself gives are
+/// kept.
 void take_process(const Document& document, MachiningProcess& machining) {
   if (machining.process.empty()) return;
   const fabrication::Process process =
@@ -122,7 +123,7 @@ void check_machine(const Document& document) {
                      "must be a machine with a tilting table, because prisms are cut, got " + in_quotes(machine));
 }
 
-/// Returns the machine file and the process file that [machining] names.
+/// Returns the machine file and the process file that [machining] names, if any.
 std::vector<design::NamedFile> files_of_machining(const Document& document) {
   std::vector<design::NamedFile> files;
   for (const std::string key : {"machining.machine", "machining.process"})
@@ -375,7 +376,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   check_columns(study, quantity_locations);
   check_keys_once(study);
   check_settings_have_effect(document, study);
-  // Contradictory settings and invalid files are refused before any point is computed.
+  // Contradictory settings and invalid files are reported before any point is computed.
   analysis_of(document, seed);
   machining_of(document);
   check_machine(document);
@@ -397,7 +398,7 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides, s
 
 namespace {
 
-/// Sets the radius of the roots and the radius of the tool's edge to the same value, unless both are given.
+/// Sets the root radius of the design and the edge radius of the tool to the same value, if only one of them is given.
 void link_edge_to_root(const Document& document, const std::string& text, PointTexts& texts, design::Design& varied,
                        MachiningProcess& machining) {
   constexpr std::string_view root = "surface.root_radius_um";
@@ -414,8 +415,8 @@ void link_edge_to_root(const Document& document, const std::string& text, PointT
   varied = design::parse_design(text, texts.design, texts.for_design);
 }
 
-/// Returns the settings for a level of accuracy. The target error is multiplied by the scale. If the study gives the
-/// number of rays, this number is divided by the square of the scale instead.
+/// Returns the settings for a level of accuracy. The target error is multiplied by ErrorLevel::scale. If the study
+/// gives a number of rays instead, this number is divided by the square of the scale.
 AnalysisSettings at_level(AnalysisSettings analysis, const std::optional<ErrorLevel>& level) {
   if (!level) return analysis;
   constexpr double max_target = 0.5;

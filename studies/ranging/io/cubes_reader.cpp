@@ -12,6 +12,7 @@
 #include "core/named_file.h"
 #include "core/schema/access.h"
 #include "core/schema/reader.h"
+#include "core/text.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,7 +32,7 @@ constexpr NumberRange kErrorArcsec{.low = -3600.0, .high = 3600.0};
 
 constexpr std::array<double, 3> kUp = {0.0, 0.0, 1.0};
 
-/// Entry [[cube]] of a file.
+/// Table [[cube]] of a file of cubes.
 struct CubeEntry {
   std::array<double, 3> position_mm{};
   std::array<double, 3> axis = kUp;
@@ -39,7 +40,7 @@ struct CubeEntry {
   std::optional<std::array<double, 3>> dihedral_error_arcsec;
 };
 
-/// Content of a file of cubes.
+/// Tables of a file of cubes.
 struct CubesFile {
   std::vector<CubeRing> rings;
   std::vector<CubeGrid> grids;
@@ -129,14 +130,14 @@ constexpr std::array<std::string_view, 3> kErrorColumns = {"dihedral_error_1_arc
                                                            "dihedral_error_3_arcsec"};
 constexpr std::size_t kAxisColumn = 3;
 
-/// Columns of a table of cubes, in their required order.
+/// Indices of the columns in a table of cubes.
 struct CubeColumns {
   std::vector<std::string_view> names;
   std::optional<std::size_t> clocking;
-  std::optional<std::size_t> errors;  ///< index of the first of three columns
+  std::optional<std::size_t> errors;  ///< index of the first of three columns with angle errors
 };
 
-/// Returns the columns that a table must have. If the table has any optional column, the optional columns are included.
+/// Returns the columns that a table must have. The three columns of angle errors must be given together or not at all.
 CubeColumns columns_of(std::string_view text, const std::string& source_name) {
   const CsvReader table(text, source_name, kMaxCubeBytes);
   CubeColumns columns{{kCubeColumns.begin(), kCubeColumns.end()}, {}, {}};
@@ -202,7 +203,7 @@ std::vector<ArrayCube> parse_cube_table(std::string_view text, const std::string
 std::vector<ArrayCube> read_cubes(const std::filesystem::path& file) {
   return read_named(Field{"cubes"}, [&] {
     const std::string text = read_file(file, kMaxCubeBytes);
-    return file.extension() == ".csv" ? parse_cube_table(text, file.string()) : parse_cubes(text, file.string());
+    return ending_of(file) == ".csv" ? parse_cube_table(text, file.string()) : parse_cubes(text, file.string());
   });
 }
 

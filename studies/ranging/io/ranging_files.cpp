@@ -97,7 +97,7 @@ Json request_json(const RangingSettings& settings) {
   return json;
 }
 
-/// Returns a cross section in 10^6 m2 with about four significant digits.
+/// Returns a cross section as text, in units of 10^6 m2 with about four significant digits.
 std::string millions(double m2) {
   const double value = m2 / kM2PerMillion;
   if (!(std::abs(value) > 0.0)) return "0";

@@ -1,6 +1,6 @@
 #pragma once
 
-// Output documents and tables of `retrace ranging`.
+// Result of `retrace ranging` as JSON, CSV and text.
 
 #include <string>
 
@@ -8,20 +8,20 @@
 
 namespace retrace::studies {
 
-/// Returns the result as a document of the format `retrace.ranging/1`.
+/// Returns the result as JSON of the format `retrace.ranging/1`.
 std::string ranging_json(const RangingResult& result);
-/// Returns a table with one line for each point.
+/// Returns a CSV table with one line for each point.
 std::string ranging_csv(const RangingResult& result);
-/// Returns the map of the first point as CSV with one line for each direction. The result is empty if there is no map.
+/// Returns the map of the first point as CSV, one line per direction. The text is empty if there is no map.
 std::string ranging_map_csv(const RangingResult& result);
-/// Returns the illuminated cubes of the first point with their ranges and cross sections, as CSV. The result is empty
-/// for a single cube.
+/// Returns the illuminated cubes of the first point as CSV, with their ranges and cross sections. The text is empty for
+/// a single cube.
 std::string cubes_csv(const RangingResult& result);
-/// Returns the pulse response of the first point as CSV. The result is empty for continuous light.
+/// Returns the pulse response of the first point as CSV. The text is empty for continuous light.
 std::string response_csv(const RangingResult& result);
-/// Returns the single shots of the first point as CSV. The result is empty if no shots are requested.
+/// Returns the single shots of the first point as CSV. The text is empty if no shots were requested.
 std::string shots_csv(const RangingResult& result);
-/// Returns the result as lines for the terminal.
+/// Returns a summary of the result for the terminal.
 std::string ranging_table(const RangingResult& result);
 
 }  // namespace retrace::studies

@@ -47,7 +47,7 @@ std::uint64_t rays_in(const raytrace::RayLedger& ledger, std::size_t account) {
   return account == kMissedAccount ? ledger.rays_missed : ledger.leaving[account];
 }
 
-/// Accounts of light that is not traced further. They are listed only if their power is not 0.
+/// Accounts of light that is no longer traced. They are listed only if their power is not 0.
 constexpr raytrace::Account kUntracedAccounts[] = {raytrace::Account::shell_reflected, raytrace::Account::stopped};
 
 std::string_view name_of(raytrace::Account account) {

@@ -212,8 +212,8 @@ std::string rre_json(const RreResult& result) {
 
 std::string rre_csv(const RreResult& result) {
   CsvWriter csv;
-  // Some accounts are optional (see is_listed()). The column of an optional account is written only if its power is not
-  // 0 for at least one point.
+  // The columns of some accounts are optional (is_listed()). An optional column is written only if its power is not 0
+  // at one or more points.
   std::vector<std::size_t> accounts;
   std::vector<std::string_view> names;
   for (std::size_t k = 0; k < kAccountCount; ++k) {

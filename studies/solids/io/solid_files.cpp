@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
@@ -49,6 +50,18 @@ Json vector_json(const geometry::Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
+/// Returns the solid that is written as STEP.
+/// \pre solid.is_manifold
+geometry::ExactSolid step_solid(const Solid& solid) {
+  return solid.exact ? *solid.exact : geometry::ExactSolid{geometry::faceted_solid(solid.mesh), {}};
+}
+
+/// Returns the name of the surface of an exact entrance face.
+std::string_view surface_name(const geometry::FaceSurface& surface) {
+  constexpr std::array<std::string_view, 4> kNames = {"plane", "cylinder", "sphere", "B-spline"};
+  return kNames.at(surface.index());
+}
+
 }  // namespace
 
 SolidFormat solid_format(const std::string& file) {
@@ -77,7 +90,18 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
     throw InputError(
         {solid.design.source_name(), 0, ""},
         "the part touches itself along edges, which is not allowed for a STEP solid: export it as STL or OBJ");
-  return geometry::step_text(geometry::faceted_solid(solid.mesh), title_of(solid));
+  return geometry::step_text(step_solid(solid), title_of(solid));
+}
+
+std::string step_notice(const Solid& solid) {
+  // Costs below which the user need not be told.
+  constexpr double kFewMegabytes = 20.0, kFewSeconds = 5.0;
+  if (!solid.is_manifold) return {};
+  const geometry::ExactSolid exact = step_solid(solid);
+  const geometry::StepCost cost = geometry::predicted_step_cost(exact);
+  if (cost.megabytes < kFewMegabytes && cost.seconds < kFewSeconds) return {};
+  return fmt::format("the STEP file has {} faces; it takes about {:.0f} MB and {:.0f} s", exact.faces.faces.size(),
+                     cost.megabytes, cost.seconds);
 }
 
 std::string solid_json(const Solid& solid, const std::string& file) {
@@ -90,9 +114,14 @@ std::string solid_json(const Solid& solid, const std::string& file) {
                {"volume_mm3", solid.volume_mm3},
                {"area_mm2", solid.area_mm2},
                {"lower_mm", vector_json(solid.lower_mm)},
-               {"upper_mm", vector_json(solid.upper_mm)},
-               {"triangles", solid.mesh.triangles.size()},
-               {"is_manifold", solid.is_manifold}});
+               {"upper_mm", vector_json(solid.upper_mm)}});
+  if (solid.exact) {
+    json["faces"] = solid.exact->faces.faces.size();
+    json["entrance_face"] = surface_name(solid.exact->entrance->surface);
+  } else {
+    json["triangles"] = solid.mesh.triangles.size();
+  }
+  json["is_manifold"] = solid.is_manifold;
   return result_text("retrace.export/2", json, solid.warnings);
 }
 
@@ -104,6 +133,13 @@ std::string solid_table(const Solid& solid) {
   text += fmt::format("  size       {} x {} x {} mm\n", fixed(size.x(), 4), fixed(size.y(), 4), fixed(size.z(), 4));
   text += fmt::format("  volume     {} mm3\n", fixed(solid.volume_mm3, 6));
   text += fmt::format("  surface    {} mm2\n", fixed(solid.area_mm2, 6));
+  if (solid.exact) {
+    text += fmt::format("  faces      {}\n", solid.exact->faces.faces.size());
+    text += fmt::format("  entrance   {}", surface_name(solid.exact->entrance->surface));
+    if (*solid.surface_error_mm > 0.0)
+      text += fmt::format(" within {:.2g} mm of the exact surface", *solid.surface_error_mm);
+    return text + "\n";
+  }
   text += fmt::format("  triangles  {}\n", solid.mesh.triangles.size());
   if (solid.surface_error_mm)
     text +=

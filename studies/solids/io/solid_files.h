@@ -19,6 +19,14 @@ SolidFormat solid_format(const std::string& file);
 /// \throw InputError for glTF if the solid is too large, or if its material has no refractive index
 std::string solid_text(const Solid& solid, SolidFormat format);
 
+/// Returns the description of a curved entrance face that a format can store.
+inline SolidEntrance solid_entrance(SolidFormat format) {
+  return format == SolidFormat::step ? SolidEntrance::exact : SolidEntrance::triangles;
+}
+
+/// Returns a line with the size of a STEP file and the time for writing it, or an empty text if both are small.
+std::string step_notice(const Solid& solid);
+
 /// Returns the document `retrace.export/2`.
 /// \param file name of the written file; empty if there is none
 std::string solid_json(const Solid& solid, const std::string& file);

@@ -10,6 +10,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/quantity/io/study_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -59,8 +60,7 @@ Row table_row(const compute::StoredPoint& point) {
 std::string sweep_json(const SweepResult& result) {
   const compute::StoreLayout layout = result.sweep.layout();
   const Study& study = result.sweep.study();
-  Json json = {{"study", study.source}};
-  if (!study.title.empty()) json["title"] = study.title;
+  Json json = begin_document(study);
   json["parameters"] = layout.inputs;
   json["quantities"] = layout.outputs;
   json["seed"] = study.seed;
@@ -90,6 +90,26 @@ std::string sweep_csv(const SweepResult& result) {
     csv.row(point.version, point.reason);
   }
   return csv.text();
+}
+
+std::string point_text(const Sweep& sweep, const compute::StoredPoint& point) {
+  const compute::StoreLayout layout = sweep.layout();
+  std::string text;
+  for (std::size_t k = 0; k < layout.inputs.size(); ++k)
+    text += fmt::format("{}{} = {}", k == 0 ? "" : ", ", printable(layout.inputs[k], 40),
+                        printable(value_text(point.inputs[k]), 40));
+  for (std::size_t k = 0; k < point.outputs.size(); ++k)
+    if (point.outputs[k].value)
+      text +=
+          fmt::format("{}{} = {:.4g}", k == 0 ? ": " : ", ", printable(layout.outputs[k], 40), *point.outputs[k].value);
+  return text;
+}
+
+std::string sweep_so_far(const Sweep& sweep, const std::vector<compute::StoredPoint>& points) {
+  std::string text = fmt::format("so far, {} of {} points", points.size(), sweep.size());
+  const auto is_done = [](const compute::StoredPoint& point) { return !point.failed; };
+  const auto last = std::find_if(points.rbegin(), points.rend(), is_done);
+  return last == points.rend() ? text : text + "; " + point_text(sweep, *last);
 }
 
 std::string sweep_table(const SweepResult& result) {

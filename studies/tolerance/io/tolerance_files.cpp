@@ -11,6 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/quantity/io/study_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -72,7 +73,8 @@ std::vector<std::size_t> by_contribution(const std::vector<compute::SobolIndex>&
   return order;
 }
 
-/// Returns a mean and half of the width of its confidence interval as text. This width determines the number of digits.
+/// Returns a mean and its uncertainty, which is half the width of its confidence interval, as text. The uncertainty
+/// determines the number of digits.
 std::string mean_text(double mean, const compute::IntervalEstimate& interval) {
   const double half = 0.5 * (interval.high - interval.low);
   if (!(half > 0.0)) return fmt::format("{:.6g}", mean);
@@ -108,8 +110,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
 
 std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result) {
   const Study& study = swept.sweep.study();
-  Json json = {{"study", study.source}};
-  if (!study.title.empty()) json["title"] = study.title;
+  Json json = begin_document(study);
   json["parameters"] = Json::array();
   for (const Parameter& parameter : study.parameters) json["parameters"].push_back(parameter.name);
   json["sampling"] = sampling_name(request.sampling);

@@ -15,8 +15,8 @@ std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& req
 /// Returns the spreads, yields and main contributors for the terminal.
 std::string tolerance_text(const Study& study, const ToleranceRequest& request, const ToleranceResult& result);
 
-/// Returns one line about the parts that are finished so far. It contains the yield, or the mean of the first quantity
-/// if the study has no limits.
+/// Returns one line about the finished parts. It contains the yield or, if the study has no limits, the mean of the
+/// first quantity.
 std::string so_far_text(const ToleranceResult& result, const ToleranceRequest& request);
 
 }  // namespace retrace::studies

@@ -167,10 +167,12 @@ Optics ideal_mirrors() {
   return optics;
 }
 
-// A cube corner of mirrors is behind a sphere of radius R. Light enters at the position r relative to the apex and
-// leaves at -r. The returned wave therefore has the additional optical path (n - 1) r^2 / R across its hexagon. Along
-// the path L in the part, the wave converges. With c = L (n - 1) / (n R), its hexagon shrinks by the fraction c, and
-// the additional path increases by the fraction c / 2.
+// The part is a cube corner of mirrors behind a sphere of radius R. Light that enters at the position r relative to the
+// apex leaves at -r. Across the hexagonal aperture, the returned wave therefore has the additional optical path (n - 1)
+// r^2 / R.
+//
+// The wave also converges on its path of length L in the part. With c = L (n - 1) / (n R), the aperture of the returned
+// wave shrinks by the fraction c. The additional optical path increases by the fraction c / 2.
 TEST(ElementLight, SphereAgreesWithTheTransformOfItsWavefront) {
   const Part part = build_part(single(HexagonalCube{3.0}, 0.3));
   const Vec2 middle = bounding_box(part.outline).centre();
@@ -204,8 +206,9 @@ PartSpec small_honeycomb(double error_arcmin, double thickness_mm = 0.2) {
   return spec;
 }
 
-// A sphere with a very large radius and an exactly plane surface must give the results of the plane entrance face. In a
-// thick part, much light meets a side of the part first, or is reflected from one element to another.
+// The two entrance surfaces are a sphere with a very large radius and an exactly plane surface. Both must give the
+// results of the plane entrance face. In the thicker parts, much light meets a side first, or is reflected from one
+// element to another.
 TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
   struct Case {
     double thickness_mm, incidence_deg;
@@ -225,7 +228,7 @@ TEST(ElementLight, PlaneSurfacesEqualThePlaneEntranceFace) {
       directions.push_back(frame.direction({0.0, minutes * kArcmin}));
     FarFieldCollector collector(part, light, policy);
     double power = 0.0;
-    // The cut-off of beams is relative to the light on the whole part, and not to the light on a single element.
+    // The cut-off is a fraction of the light on the whole part, and not of the light on a single element.
     BeamTracer(part).trace(pmma(), light, {0.5}, beams(1e-8), nullptr, [&](const ReturnedBeam& beam) {
       if (beam.depth == 0) return;
       collector.add(beam);

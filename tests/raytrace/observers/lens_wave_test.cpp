@@ -1,5 +1,5 @@
-// Tests of the light behind curved entrance surfaces. Amplitudes are compared with a wave that is computed from rays,
-// and powers with Monte Carlo.
+// Tests of light behind curved entrance surfaces. Amplitudes are compared with a wave that is constructed from rays,
+// and powers with Monte Carlo results.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,15 +31,15 @@ constexpr double kWaveNm = 550.0;
 constexpr double kWave = 1e-6 * kWaveNm;
 constexpr double kArcmin = kDeg / 60.0;
 
-/// Wave that returns from an ideal cube corner behind a lens, computed from rays. A ray along -z enters the spherical
-/// surface of radius R, is reversed at the apex, and leaves through the surface. The apex is on the axis of the sphere.
-/// Each ray carries the amplitude sqrt(dA / dA'), where dA and dA' are the areas of a bundle of rays before and behind
-/// the lens.
+/// Wave that an ideal cube corner behind a lens returns, constructed from rays. The lens is a spherical surface of
+/// radius R. The apex of the cube corner is on the axis of the sphere. Each ray arrives along -z, is refracted, is
+/// reversed at the apex, and leaves through the sphere. The amplitude of a ray is sqrt(dA / dA'), where dA and dA' are
+/// the cross sections of a bundle of rays before and behind the lens.
 class WaveOfRays {
  public:
   /// \param depth_mm distance of the apex from the highest point of the sphere
-  /// \param moves_rays if false, rays leave at the points where they would leave without a lens, and all amplitudes are
-  ///        equal
+  /// \param moves_rays false: rays leave at the points where they would leave without a lens, and all amplitudes are
+  ///     equal
   WaveOfRays(const Polygon& hexagon, double radius_mm, double depth_mm, bool moves_rays)
       : radius_mm_(radius_mm), depth_mm_(depth_mm) {
     const Rectangle box = bounding_box(hexagon);
@@ -61,7 +61,7 @@ class WaveOfRays {
       }
   }
 
-  /// Returns the intensity averaged over the discs of source and receiver, which have the same radius.
+  /// Returns the intensity, averaged over the discs of source and receiver. Both discs have the same radius.
   double mean(const Vec2& centre, double radius) const {
     constexpr int kHalf = 18;
     double sum = 0.0, weights = 0.0;
@@ -80,8 +80,8 @@ class WaveOfRays {
  private:
   static constexpr int kPixels = 100;
   struct Sample {
-    Vec2 at = Vec2::Zero();  ///< intersection with the plane that touches the sphere
-    double path_mm = 0.0;    ///< optical path of the ray, which starts and ends in this plane
+    Vec2 at = Vec2::Zero();  ///< intersection of the ray with the plane that touches the sphere
+    double path_mm = 0.0;    ///< optical path of the ray from this plane to this plane
     double weight = 0.0;
   };
 
@@ -91,11 +91,11 @@ class WaveOfRays {
   }
 
   Sample traced(const Vec2& at) const {
-    // The origin is the highest point of the sphere.
+    // The origin of the coordinates is the highest point of the sphere.
     const Vec3 centre(0.0, 0.0, -radius_mm_);
     const Vec3 entry(at.x(), at.y(), std::sqrt(radius_mm_ * radius_mm_ - at.squaredNorm()) - radius_mm_);
     const Vec3 inside = bent(-Vec3::UnitZ(), (entry - centre) / radius_mm_, 1.0 / kPmma);
-    // The cube corner maps the point p to 2 apex - p, and reverses the light.
+    // The cube corner maps a point p to 2 apex - p and reverses the direction of the light.
     const Vec3 start = 2.0 * Vec3(0.0, 0.0, -depth_mm_) - entry;
     const Vec3 back = -inside;
     const Vec3 from = start - centre;
@@ -124,9 +124,9 @@ ApertureKernel ten_minutes() {
   return ApertureKernel({Angle::from_deg(1.0 / 6.0), Angle::from_deg(1.0 / 6.0)});
 }
 
-// The wave converges between the two passages through the lens. Its amplitude is the square root of the Jacobian of the
-// rays. A wave with the correct phase but a constant amplitude, which does not converge, differs by more than 1 %. The
-// model neglects terms of the amplitude that are of second order in the curvature.
+// The wave converges between its two passages through the lens. Its amplitude must be the square root of the Jacobian
+// of the rays. For comparison, a wave with the correct phase but with a constant amplitude differs by more than 1 %.
+// The tolerance allows for terms of second order in the curvature, which the model neglects.
 TEST(LensWave, AmplitudeIsTheSquareRootOfTheJacobian) {
   const double thickness_mm = 2.5;
   const Part part = build_part(single(HexagonalCube{1.5}, thickness_mm));
@@ -169,7 +169,7 @@ TEST(LensWave, AmplitudeIsTheSquareRootOfTheJacobian) {
   EXPECT_GT(constant_error, 0.01);
 }
 
-/// Powers of the light that has entered, as fractions of the incident power. Each member is a destination of the light.
+/// Light that has entered a part, divided by its destination. Powers are fractions of the incident power.
 struct Destinations {
   double within_cone = 0.0, elsewhere = 0.0, sides = 0.0, back = 0.0, truncated = 0.0;
 
@@ -199,7 +199,7 @@ Destinations by_beams(const Part& part, const Surface& surface, const Optics& op
                                               }
                                             });
     const Ledger& ledger = result.ledgers[0];
-    // At a lossless face, light beyond the critical angle ends. No observer receives this light.
+    // At a lossless entrance face, light beyond the critical angle is not traced further, and no observer receives it.
     if (optics.lossless_entrance)
       all.elsewhere +=
           scene->power_factor * (ledger[Account::retroreflected] + ledger[Account::returned_elsewhere] - observed);
@@ -217,11 +217,12 @@ struct Lens {
 
 class LensPower : public ::testing::TestWithParam<Lens> {};
 
-// The retroreflected power agrees with Monte Carlo, which refracts every ray at the exact surface. With a lossless
-// surface, the accounts add up to the incident power. With Fresnel reflection, the light is so oblique that the outer
-// side of the surface reflects nothing into the cone. Light that leaves an element near a side of the part converges or
-// diverges. The model neglects this when it determines whether the light meets the side. This error is proportional to
-// the curvature.
+// The reference is Monte Carlo, which refracts every ray at the exact surface. With a lossless surface, the powers of
+// all destinations must add up to the incident power. With Fresnel reflection, the incidence is so oblique that no
+// light from the outer side of the surface is inside the cone.
+//
+// The tolerance at sides is proportional to the curvature. Behind a curved surface, light converges or diverges on its
+// way from an element to a side. The model neglects this convergence when it determines whether light meets the side.
 TEST_P(LensPower, AgreesWithRaysInEachAccount) {
   const Lens lens = GetParam();
   const Part part = build_part(finite(HexagonalCube{3.0}, Arrangement::honeycomb, 18.0, 14.0, 2.5));

@@ -1,4 +1,4 @@
-// Tests of the numbers of paths that a camera traces through its pixels.
+// Tests of the number of paths that a camera traces through each pixel (PixelPoints).
 #include "raytrace/observers/pixel_points.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ constexpr std::size_t kRows = 30;
 constexpr std::uint32_t kSamples = 8;
 constexpr std::uint32_t kMinPoints = 4;
 
-/// Returns the moments of a pixel in which half of the samples have the luminance 0 and the others a given luminance.
+/// Returns the moments of a pixel. Half of its samples have the luminance 0, and the other half has the given
+/// luminance.
 PixelMoments flickering(double luminance) {
   PixelMoments moments;
   for (std::uint32_t k = 0; k < kSamples; ++k) moments.add(k % 2 == 0 ? 0.0 : luminance);
@@ -68,8 +69,8 @@ TEST(PixelPoints, AreConcentratedOnNoisyPixels) {
   EXPECT_LT(ratio, 1.0 + 1.7 * std::numbers::sqrt2);
 }
 
-/// The picture has two kinds of noisy areas. Within the rounding to powers of two, the numbers of points are
-/// proportional to the 2/3 power of the standard deviations.
+/// The picture contains noisy areas with two different standard deviations. The numbers of points must be proportional
+/// to the 2/3 power of the standard deviations. The tolerance allows for the rounding to powers of two.
 TEST(PixelPoints, IncreaseWithTheStandardDeviation) {
   std::vector<PixelMoments> moments(kColumns * kRows, constant(0.0));
   for (std::size_t row = 5; row < 15; ++row)

@@ -10,4 +10,9 @@ retrace_test(raytrace_tests
 # Tests of light behind curved entrance surfaces. They are a separate program, because they trace many elements.
 retrace_test(raytrace_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/element_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/lens_wave_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/rough_lens_test.cpp
   LIBRARIES retrace::raytrace retrace::geometry_io)
+# Tests of interference between cells. They are a separate program, because they use only the tracer of beams.
+retrace_test(raytrace_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/lattice_field_test.cpp
+  LIBRARIES retrace::beams retrace::geometry)

@@ -70,7 +70,7 @@ class PageWorks(PageCase):
         self.assertEqual(self.driver.execute_script(
             "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !/^(data|blob):/.test(n))"), [])
         pictures = sum(len(image.get_attribute("src")) for image in self.all("img"))
-        self.assertLess(self.page.stat().st_size - pictures, 2.45e6)
+        self.assertLess(self.page.stat().st_size - pictures, 2.55e6)
 
     def test_curve_is_hovered_and_zoomed(self):
         figure = self.one("figure[data-chart]")

@@ -1,11 +1,14 @@
-// Tests of interrupted compositions, and of area fractions that are multiples of a step.
+// Tests of interrupted compositions and of rounded area fractions.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -13,6 +16,7 @@
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
 #include "studies/compose/mixture.h"
+#include "studies/quantity/machining_limits.h"
 #include "tests/support/analytic_study.h"
 #include "tests/support/refusals.h"
 
@@ -26,7 +30,7 @@ Analytic::Function lobe_at(double point) {
   return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
 }
 
-/// A study of two goals. `computed` counts the designs whose first goal was computed.
+/// Returns a study with two goals. `computed` counts the designs for which the first goal was computed.
 Study lobes(const std::string& keys, std::atomic<int>* computed, Cancellation* cancel, int end) {
   const Functions functions = {{"g.1",
                                 [=](double x, double y) {
@@ -54,13 +58,13 @@ TEST(BestSoFar, AnInterruptedCompositionHasThePartOfTheFinishedCells) {
     double fraction = 0.0;
     for (const Zone& zone : composition.best->zones) fraction += zone.area_fraction;
     EXPECT_NEAR(fraction, 1.0, 1e-9);
-    // The part is at least as good as the best single cell.
+    // The part must be at least as good as a part that consists of the best single cell.
     double single = 0.0;
     for (const FamilyCell& cell : composition.catalogue)
       single = std::max(single, *std::ranges::min_element(cell.mixed.goals));
     EXPECT_GE(composition.best->mixture.min_goal, single - 1e-9);
     EXPECT_FALSE(composition_text(study, request, composition).empty());
-    // The next run continues with the stored cells. Its result is equal to the result of a run without interruption.
+    // The next run continues with the stored cells. Its result must be equal to the result of an uninterrupted run.
     const Study whole = lobes("", nullptr, nullptr, 0);
     compute::ResultStore fresh("", compose_layout(whole), compute::IfExists::refuse);
     const Composition resumed = compose(whole, request, store, nullptr, nullptr);
@@ -89,6 +93,68 @@ TEST(BestSoFar, FractionsAreMultiplesOfTheStep) {
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);
   EXPECT_LE(composition.best->mixture.merit, composition.unlimited_merit + 1e-12);
+}
+
+/// Quantity with a given standard error.
+class Uncertain : public Quantity {
+ public:
+  Uncertain(std::shared_ptr<const Quantity> exact, double std_error)
+      : Quantity(exact->name()), exact_(std::move(exact)), std_error_(std_error) {}
+  std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
+    std::optional<Measured> measured = exact_->measure(candidate, cancel);
+    if (measured) measured->std_error = std_error_;
+    return measured;
+  }
+
+ private:
+  std::shared_ptr<const Quantity> exact_;
+  double std_error_;
+};
+
+/// Composes the study of two goals whose values have a standard error.
+Composition composed_with_error(double std_error) {
+  Study study = lobes("", nullptr, nullptr, 0);
+  for (auto& quantity : study.quantities) quantity = std::make_shared<Uncertain>(quantity, std_error);
+  compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
+  return compose(study, read_compose(study), store, nullptr, nullptr);
+}
+
+/// Returns the smallest number of equal steps of which all area fractions are multiples, or 0 if there is none.
+int steps_of(const Composition& composition) {
+  for (const int steps : {10, 20, 50, 100, 200, 500, 1000}) {
+    const auto is_multiple = [&](const Zone& zone) {
+      return std::abs(steps * zone.area_fraction - std::round(steps * zone.area_fraction)) < 1e-9;
+    };
+    if (std::ranges::all_of(composition.best->zones, is_multiple)) return steps;
+  }
+  return 0;
+}
+
+TEST(BestSoFar, TheErrorOfTheGoalsDeterminesTheStepOfFractions) {
+  const Composition exact = composed_with_error(0.0);
+  ASSERT_TRUE(exact.best.has_value());
+  int steps_before = 1'000'000;
+  for (const double error : {1e-3, 1e-2, 1e-1}) {
+    SCOPED_TRACE(error);
+    const Composition rounded = composed_with_error(error);
+    ASSERT_TRUE(rounded.best.has_value());
+    const int steps = steps_of(rounded);
+    EXPECT_GT(steps, 0);
+    EXPECT_LE(steps, steps_before);
+    EXPECT_GE(rounded.best->mixture.merit, exact.best->mixture.merit - error);
+    steps_before = steps;
+  }
+  EXPECT_EQ(steps_before, 10);
+}
+
+TEST(BestSoFar, CellsRespectTheWidthOfTheTool) {
+  const Functions functions = {{"g.1", lobe_at(0.8)}};
+  const std::string keys = "[compose]\nmaximize = [\"g.1\"]\n[machining]\ntool_width_mm = 2\n";
+  const ComposeRequest request = read_compose(with_machining_limits(analytic_study(keys, functions)));
+  ASSERT_EQ(request.cell_constraints.size(), 1U);
+  EXPECT_EQ(request.cell_constraints.front().quantity, "tool_fit_mm");
+  EXPECT_EQ(request.cell_constraints.front().min, 0.0);
+  EXPECT_TRUE(read_compose(analytic_study(keys, functions)).cell_constraints.empty()) << "not computed by the study";
 }
 
 /// The test compares the result with all neighbouring multiples of the step, for three cells.

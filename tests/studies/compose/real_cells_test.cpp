@@ -154,9 +154,9 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   }
 }
 
-// If the part is traced as a whole, its RRE is a mean over the zones, weighted by their areas. The value of each zone
-// is the RRE of an infinite array of its cells. The borders between zones cause a difference that is inversely
-// proportional to the size of the part.
+// The RRE of the whole part is compared with the mean RRE of its zones, weighted by their areas. The RRE of a zone is
+// the RRE of an infinite array of its cells. Borders between zones cause a difference that is inversely proportional to
+// the size of the part.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;

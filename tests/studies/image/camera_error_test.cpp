@@ -107,8 +107,8 @@ TEST(CameraError, IsRightWithinAnArray) {
   EXPECT_LT(sum, 1.1);
 }
 
-/// In a picture with mostly dark pixels, noisy pixels have more paths than the other pixels. The reported errors of
-/// these pixels are correct on average, and none of them is too small.
+/// If most pixels of a picture are dark, noisy pixels have more paths. The reported errors of the noisy pixels must be
+/// correct on average, and none of these errors may be too small.
 TEST(CameraError, IsRightForPixelsWithMorePaths) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
   CameraScene scene = border_scene(part);
@@ -129,7 +129,8 @@ TEST(CameraError, IsRightForPixelsWithMorePaths) {
     sum += variance;
   }
   ASSERT_GT(compared, 5U);
-  // For 32 normally distributed values with the sample variance s^2, the mean of 1 / s^2 is 31 / 29 times 1 / sigma^2.
+  // Expected mean of sigma^2 / s^2, where s^2 is the sample variance of 32 normally distributed values with the
+  // variance sigma^2: 31 / 29.
   const double expected = (kPasses - 1.0) / (kPasses - 3.0);
   const double error = expected * std::sqrt(2.0 / (kSeeds - 1.0) / static_cast<double>(compared));
   EXPECT_NEAR(sum / static_cast<double>(compared), expected, 4.0 * error);

@@ -59,8 +59,8 @@ Part bricks() {
   return build_part(finite(RtpElement{0.5, 0.4, 88.0}, Arrangement::offset, 2.4, 1.9, 1.0));
 }
 
-/// Returns a plate in front of a part. Its inner surface is 2 mm above the middle of the part and may be inclined or
-/// curved.
+/// Returns a plate in front of a part. Its inner surface is 2 mm above the middle of the part and may be inclined. Its
+/// outer surface may be curved.
 Shell plate_in_front(double index, double absorption_per_mm, double wedge_deg = 0.0, double radius_mm = 0.0) {
   Shell shell;
   shell.inner.vertex_mm = {0.0, 0.0, 2.0};
@@ -94,8 +94,9 @@ TEST(CurvedCamera, PartIsInvisibleInUniformLight) {
     }
 }
 
-// Shells that do not absorb light are also invisible in uniform light. The light that they reflect comes from the
-// surroundings. A plate that absorbs light darkens the background behind it by its transmittance at normal incidence.
+// In uniform light, shells without absorption must be invisible, because the light that they reflect also comes from
+// the uniform surroundings. A plate with absorption must darken the background by its transmittance at normal
+// incidence.
 TEST(CurvedCamera, ShellsAreInvisibleInUniformLight) {
   const Part part = bricks();
   const Entrance sphere = sphere_entrance(40.0, 1.2, centroid(part.outline));
@@ -112,7 +113,7 @@ TEST(CurvedCamera, ShellsAreInvisibleInUniformLight) {
       optics.shells.front().outer.vertex_mm.z() += 4.0;
       const CameraImage image = pictured(part, entrance, optics, scene, 2);
       for (const double luminance : image.luminance) EXPECT_NEAR(luminance, 7.0, 1e-6);
-      // Pixels that show only shells do not show the part.
+      // The first pixel shows only shells. It must not count as a pixel that shows the part.
       EXPECT_EQ(image.coverage.front(), 0.0);
     }
   Optics optics = pmma();

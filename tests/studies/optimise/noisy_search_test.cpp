@@ -17,20 +17,20 @@ using studies::ErrorLevel, studies::Estimate, studies::NoisyOptimum, studies::No
     studies::SearchPoint;
 using Position = std::vector<double>;
 
-/// Problem with a known maximum.
+/// Function with a known maximum.
 struct Problem {
   std::string name;
   std::size_t dimensions = 1;
   std::function<double(std::size_t combination, const Position&)> value;
   double maximum = 0.0;
   std::size_t combinations = 1;
-  /// Amount by which a limit is exceeded. It is observed together with the value. Empty if the problem has no limit.
+  /// Excess over a limit, which is observed together with the value. Empty if the problem has no limit.
   std::function<double(const Position&)> excess = {};
-  bool is_cheap = false;           ///< true: the limit can be checked without an observation
-  std::vector<double> peaks = {};  ///< positions of peaks that the problem reports
+  bool is_cheap = false;           ///< true: is_allowed() checks the limit without an observation
+  std::vector<double> peaks = {};  ///< positions of peaks that peaks_near() returns
 };
 
-/// Returns a pseudo-random number from -1 to 1 that depends only on the arguments (SplitMix64).
+/// Returns a pseudo-random number from -1 to 1 that is a function of the two arguments (SplitMix64).
 double hashed(std::uint64_t a, std::uint64_t b) {
   std::uint64_t x = a * 0x9e3779b97f4a7c15U + b * 0xbf58476d1ce4e5b9U + 0x94d049bb133111ebU;
   for (int k = 0; k < 3; ++k) {
@@ -41,16 +41,16 @@ double hashed(std::uint64_t a, std::uint64_t b) {
   return 2.0 * static_cast<double>(x >> 11U) / 9007199254740992.0 - 1.0;
 }
 
-/// Returns a normally distributed number that depends only on the arguments.
+/// Returns a normally distributed pseudo-random number that is a function of the two arguments.
 double normal(std::uint64_t a, std::uint64_t b) {
   const double u = 0.5 + 0.4999999999 * hashed(a, 2 * b);
   return std::sqrt(-2.0 * std::log(u)) * std::cos(std::numbers::pi * hashed(a, 2 * b + 1));
 }
 
-/// Problem whose values have random errors. A fraction of the error is common to all points.
+/// Problem whose observed values have random errors. A fraction of each error is common to all points.
 class Noisy : public studies::SearchedFunction {
  public:
-  /// \param sigma standard error of an observation with the scale 1
+  /// \param sigma standard error of an observation with ErrorLevel::scale 1
   /// \param common fraction of the variance that is common to all points of a replicate
   Noisy(const Problem& problem, double sigma, double common, std::uint64_t seed)
       : problem_(problem), sigma_(sigma), common_(common), seed_(seed) {}
@@ -79,7 +79,7 @@ class Noisy : public studies::SearchedFunction {
     return found;
   }
 
-  /// Positions are rounded to one to four decimals.
+  /// Returns positions that are rounded to multiples of decreasing steps, from 0.1 to 1e-4.
   std::vector<SearchPoint> rounder_points(const SearchPoint& point, double within) const override {
     std::vector<SearchPoint> found;
     for (const double step : {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 1e-4}) {
@@ -96,8 +96,8 @@ class Noisy : public studies::SearchedFunction {
   }
 
  private:
-  /// Returns the random error of a point, in units of its standard error. A fraction of this error is common to all
-  /// points and is a smooth function of the position.
+  /// Returns the random error of a point, divided by its standard error. Its common fraction is a smooth function of
+  /// the position.
   double error_of(const SearchPoint& point, const ErrorLevel& level) const {
     const std::uint64_t stream = seed_ * 1000 + level.replicate * 10 + (level.scale > 3.0 ? 1U : 0U);
     double smooth = normal(stream, 1);
@@ -122,8 +122,8 @@ double sum_of_squares(const Position& x, const Position& centre, const Position&
 }
 
 double teeth(double x) {
-  // Fraction of a part of the length 1 that whole elements fill, as a function of their size. It has a peak at each
-  // size for which 1 / size is a whole number. The second term makes one peak the best.
+  // Fraction of a part of length 1 that whole elements fill, as a function of their size. It has a peak at each size
+  // for which 1 / size is a whole number. The second term makes one of the peaks the highest.
   const double size = 0.02 + 0.08 * x;
   return std::floor(1.0 / size + 1e-9) * size - 2.0 * std::pow(x - 0.43, 2);
 }
@@ -197,7 +197,8 @@ std::vector<Problem> problems() {
   return all;
 }
 
-/// Returns the nearest peak, as in the scan of an optimization, or `x` if there is none within half a step of the scan.
+/// Returns the nearest peak within half a step of the scan, or `x` if there is none. The scan of an optimization moves
+/// its points in the same way.
 double at_nearest_peak(const Problem& problem, double x) {
   double best = x;
   for (const double peak : problem.peaks)
@@ -251,8 +252,8 @@ TEST(NoisySearch, FindsTheKnownMaximumWithoutNoise) {
   }
 }
 
-/// In 95 % of all runs with noise, the loss must be below the reported error. A search needs at most 1.5 times as many
-/// observations as a search without noise.
+/// In 95 % of all searches with random errors, the loss must be below the reported resolution. A search with random
+/// errors may make at most 1.5 times as many observations as a search without errors.
 TEST(NoisySearch, StatesItsErrorForTwentyProblems) {
   constexpr int kSeeds = 25;
   const std::vector<Problem> all = problems();
@@ -308,7 +309,7 @@ TEST(NoisySearch, CommonRandomNumbersMakeDifferencesAccurate) {
   const Estimate difference = studies::paired_difference(a, b);
   EXPECT_NEAR(difference.value, 0.1, 5e-3);
   EXPECT_LT(difference.std_error, 5e-3);
-  // With a single replicate, the error of the difference is the error for independent values.
+  // With a single replicate, the difference has the standard error of a difference between independent values.
   const Estimate single = studies::paired_difference({{0.5, 3.0}}, {{0.4, 4.0}});
   EXPECT_DOUBLE_EQ(single.std_error, 5.0);
 }

@@ -1,4 +1,5 @@
-// Tests of optimizations with random errors, of interruptions, of whole sizes, and of the limits of tool and machine.
+// Tests of optimizations: random errors, interruptions, sizes that fill the part, and limits of the tool and the
+// machine.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +34,8 @@ double number(const ParameterValue& value) {
   return std::get<double>(value.shown);
 }
 
-/// Quantity that is the sum of a known function of the thickness and a random error. The error depends on the seed and
-/// on the target error of the analysis, like the error of a traced quantity.
+/// Quantity that adds a random error to a known function of the thickness. As for traced quantities, the error depends
+/// on the seed and on the target error of the analysis.
 class NoisyQuantity : public Quantity {
  public:
   using Function = std::function<double(double thickness_mm)>;
@@ -58,7 +59,7 @@ class NoisyQuantity : public Quantity {
   Action action_;
 };
 
-/// Returns a study of the thickness, from 0.5 to 3 mm, with a noisy quantity `f`.
+/// Returns a study with the thickness as its parameter, from 0.5 to 3 mm, and with a noisy quantity `f`.
 Study noisy_study(const NoisyQuantity::Function& f, const std::string& keys = "",
                   const NoisyQuantity::Action& action = {}) {
   Study study = parse_study(
@@ -87,12 +88,12 @@ TEST(OptimiseNoise, TheResultIsRoundAndItsErrorIsStated) {
   EXPECT_LE(hill(1.52) - hill(x), optimum.resolution);
   EXPECT_NEAR(100.0 * x, std::round(100.0 * x), 1e-9) << "at most two decimals";
   EXPECT_NEAR(*optimum.best->objective, hill(x), 3.0 * optimum.best->objective_error);
-  // Only a few designs are computed with a small error.
+  // Only a few designs may be computed with a small error.
   const auto accurate =
       std::ranges::count_if(optimum.designs, [](const Variant& variant) { return variant.objective_error < 3e-4; });
   EXPECT_LE(accurate, 12);
   EXPECT_GE(optimum.designs.size(), 60U);
-  // A resumed search recomputes no design and has the same result.
+  // If the search is repeated with the same store, it must have the same result without computing a design again.
   const std::size_t points = store.finished().size();
   const Optimum again = optimise(study, request, store, nullptr, nullptr);
   EXPECT_EQ(store.finished().size(), points);
@@ -106,7 +107,7 @@ TEST(OptimiseNoise, NoRoundingKeepsTheBestPoint) {
   EXPECT_LE(hill(1.52) - hill(number(optimum.best->values[0])), optimum.resolution);
 }
 
-/// Records the best designs that a search reports.
+/// Records the best designs that a search reports to its observer.
 class BestDesigns : public OptimiseObserver {
  public:
   void at(std::size_t evaluated) override { count = evaluated; }
@@ -115,7 +116,7 @@ class BestDesigns : public OptimiseObserver {
   std::size_t count = 0;
 };
 
-/// The search is interrupted after twelve different numbers of computed designs.
+/// Interrupts the search after different numbers of computed designs.
 TEST(OptimiseNoise, AnInterruptionLosesNoFinishedDesign) {
   const Study whole = noisy_study(hill);
   const OptimiseRequest request = read_optimise(whole);
@@ -142,10 +143,10 @@ TEST(OptimiseNoise, AnInterruptionLosesNoFinishedDesign) {
     EXPECT_TRUE(optimum.best->feasible());
     EXPECT_FALSE(optimum.front.empty());
     ASSERT_FALSE(observer.reported.empty());
-    // The best design so far is a valid design file.
+    // The best design of the interrupted search must be valid.
     const std::string text = variant_design_text(study, *optimum.best, "# best\n");
     EXPECT_EQ(design::parse_design(text, "best.toml").part().thickness_mm, number(optimum.best->values[0]));
-    // The next run continues the search. Its result is equal to the result of a run without interruption.
+    // The next run continues the search. Its result must be equal to the result of an uninterrupted run.
     const Optimum resumed = optimise(whole, request, store, nullptr, nullptr);
     EXPECT_TRUE(resumed.complete);
     EXPECT_EQ(optimum_json(whole, request, resumed, 0.0), expected);
@@ -199,7 +200,7 @@ TEST(WholeSizes, DivideTheLengthsOfThePart) {
   const WholeSizes base = sizes_of({"element.base_mm"}, lengths);
   EXPECT_TRUE(base.is_whole(30.0 / 61.0));
   EXPECT_EQ(base.between(0.49, 0.51), (std::vector<double>{30.0 / 61.0, 0.5, 30.0 / 59.0}));
-  // Gaps and margins: n sizes and n - 1 gaps fill the length between the margins.
+  // With gaps and margins, n elements and n - 1 gaps fill the length between the margins.
   const WholeSizes gaps =
       sizes_of({"element.base_mm"}, {"array.x_length_mm=30", "array.x_gap_mm=0.1", "array.x_offset_mm=0.5",
                                      "array.arrangement=\"aligned\"", "array.shifted_rows="});
@@ -212,15 +213,16 @@ TEST(WholeSizes, RoundValuesBeginWithTheRoundest) {
   ASSERT_FALSE(values.empty());
   EXPECT_EQ(values.front(), 0.5);
   EXPECT_EQ(round_values(0.0314, 0.03, 0.033, {}).front(), 0.03);
-  // 0.45 and 0.46 are equally round multiples of 0.01. Only for 0.46 does a whole number of elements fill 9.2 mm.
+  // Both 0.45 and 0.46 are multiples of 0.01. Only with the size 0.46, a whole number of elements fills 9.2 mm, so 0.46
+  // must come first.
   const WholeSizes sizes = sizes_of({"element.base_mm"}, {"array.x_length_mm=9.2"});
   const std::vector<double> near = round_values(0.452, 0.449, 0.461, sizes);
   const auto first = std::ranges::find(near, 0.46);
   EXPECT_NE(first, near.end());
 }
 
-/// The optimum is between the points of a coarse scan. The search must find it, because it tries sizes for which a
-/// whole number of elements fills the part.
+/// The optimum is between the points of a coarse scan. The search must find it, because it also evaluates sizes with
+/// which a whole number of elements fills the part.
 TEST(WholeSizes, TheOptimumIsASizeThatDividesThePart) {
   const Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = [\"element.base_mm\", \"element.width_mm\"]\n"
@@ -253,7 +255,7 @@ TEST(MachiningLimits, HoldByDefault) {
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
   EXPECT_EQ(number(optimum.best->values[0]), 0.5) << "the smallest element that the tool fits";
-  // A constraint of the study replaces the limit, and the limits can be ignored.
+  // A constraint of the study replaces the limit of the tool. The study can also ignore all limits.
   EXPECT_EQ(read_optimise(with_limits(machining_study("tool_width_mm = 0.5\n",
                                                       "[[quantity]]\nkind = \"tool_fit_mm\"\n[[constraint]]\n"
                                                       "quantity = \"tool_fit_mm\"\nmin = 0.1\n")))
@@ -294,7 +296,7 @@ TEST(MachiningLimits, NewKeysAreChecked) {
   EXPECT_EQ(rounding("\"none\""), "read");
 }
 
-/// Values that [machining] does not give are taken from the process file.
+/// Values that [machining] does not give must be taken from the process file.
 TEST(MachiningLimits, AProcessGivesTheOtherValues) {
   const auto machining = [](const std::string& keys) {
     const Study study = parse_study(machining_study(keys), kStudies + "study.toml");
@@ -306,8 +308,8 @@ TEST(MachiningLimits, AProcessGivesTheOtherValues) {
   EXPECT_NE(named.roughing_feed_mm_per_min, defaults.roughing_feed_mm_per_min);
 }
 
-/// On the ideal machine, A tilts the facets by +-45 degrees about X, and C rotates by 180 degrees for facet 2. The
-/// remaining travel follows from the corners of the part.
+/// On this machine, A tilts the facets by +-45 degrees about X, and C rotates the part by 180 degrees for facet 2. The
+/// remaining travel then follows from the corners of the part.
 TEST(MachinePlan, TravelIsThatOfTheFarthestCorner) {
   const design::Design design =
       design::read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/rtp_brick_1mm.toml",
@@ -317,11 +319,11 @@ TEST(MachinePlan, TravelIsThatOfTheFarthestCorner) {
   process.tool_width_mm = 1.0;
   const MachinePlan plan = plan_on_machine(design, process);
   ASSERT_TRUE(plan.travel_mm.has_value());
-  // The centres of the elements are up to 29.5 mm from the centre along x and 19.5 mm along y. The limits are 120 mm.
-  // At 45 degrees, y and z are at most (29.5 + depth) / sqrt(2).
+  // The centres of the elements are up to 29.5 mm along x and 19.5 mm along y from the centre of the part. Each axis is
+  // limited to 120 mm. At 45 degrees, the coordinates y and z are at most (29.5 + depth) / sqrt(2).
   EXPECT_NEAR(*plan.travel_mm, 120.0 - (29.5 + 0.2) / std::numbers::sqrt2, 0.5);
   ASSERT_TRUE(plan.time_s.has_value());
-  // The plan has different retracts than the closed form. It also includes accelerations and moves between elements.
+  // The tolerance allows for accelerations, for moves between elements and for different retracts in the plan.
   const double path_s = static_cast<double>(plan.elements) *
                         seconds_per_element(std::get<geometry::RtpElement>(design.part().element), process);
   EXPECT_NEAR(*plan.time_s, path_s, 0.05 * path_s);
@@ -349,8 +351,8 @@ TEST(MachinePlan, ToolLifeIsComparedWithThePathInOneElement) {
   };
   ASSERT_TRUE(value("edge_life_margin_mm").has_value());
   const double path_mm = 50.0 - *value("edge_life_margin_mm");
-  // The roughing cuts of a facet of length L plunge by 15 um, 30 um, ... and plough 0.1 mm each, or up to the face of
-  // the blank. Two finishing cuts plunge along each facet.
+  // Each roughing cut of a facet of length L plunges 15 um deeper and then ploughs 0.1 mm, or up to the face of the
+  // blank. Two finishing cuts plunge along each facet.
   const double facet_mm = 0.4 / std::numbers::sqrt2;
   double expected_mm = 4.0 * facet_mm;
   for (double depth_mm = facet_mm - 0.010; depth_mm > 1e-9; depth_mm -= 0.015)
@@ -358,7 +360,7 @@ TEST(MachinePlan, ToolLifeIsComparedWithThePathInOneElement) {
   EXPECT_NEAR(path_mm, expected_mm, 0.1 * expected_mm);
 }
 
-/// The radius of the roots and the radius of the tool's edge are equal unless both are given.
+/// The root radius of the design and the edge radius of the tool must be equal unless both are given.
 TEST(LinkedRadius, EdgeAndRootAreEqualUnlessSetApart) {
   const auto radii = [](const std::string& machining, const std::vector<std::string>& overrides) {
     const Study study = parse_study(machining_study(machining), kStudies + "study.toml", overrides);

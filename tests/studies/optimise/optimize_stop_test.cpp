@@ -1,4 +1,4 @@
-// Tests of the command `retrace optimize`: interrupted, killed and refused runs, and output files.
+// Tests of `retrace optimize`: runs that are interrupted, killed or refused, and output files.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a design of prisms with rounded roots and rough facets. Such prisms are traced by rays.
+/// Returns a design of prisms with rounded roots and rough facets, for which the engine `auto` traces rays.
 std::string rough_design() {
   return "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nx_length_mm = "
          "30\n"
@@ -47,12 +47,12 @@ TEST(OptimizeStop, AnInterruptWritesTheBestSoFar) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   child.interrupt(SIGINT);
   const Outcome outcome = child.wait(patient(60));
-  if (outcome.code == 0) return;  // the run ended before the interrupt
+  if (outcome.code == 0) return;  // the run ended before the interruption
   EXPECT_EQ(outcome.code, 130);
   ASSERT_TRUE(fs::exists(folder.path() / "out/best.toml"));
   expect_valid_best(folder);
-  // On a busy machine, the program may be ended before it writes its results. The store and the best design are still
-  // available.
+  // On a busy machine, the program may be killed before it writes its results. The store and the best design must exist
+  // even then.
   if (!fs::exists(folder.path() / "out/optimum.json")) return;
   const Json json = folder.json("out/optimum.json");
   EXPECT_EQ(json["complete"], false);
@@ -84,19 +84,19 @@ TEST(OptimizeStop, ARunWithoutAnySuccessDoesNotBlockTheNextRun) {
            "\"\nfrom = 1\nto = 3\n[[quantity]]\nkind = \"lens_thickness_mm\"\n[optimize]\n"
            "minimize = \"lens_thickness_mm\"\nscan = 5\n";
   };
-  // A wrong value in [machining] is refused before anything is written.
+  // A wrong value in [machining] must be refused before any file is written.
   folder.write("study.toml", study("array.overlap_percent") + "[machining]\ntool_width_mm = -1\n");
   EXPECT_EQ(refused_at(retrace(folder, {"optimize", "study.toml", "-o", "out"})),
             "study.toml:12: machining.tool_width_mm");
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
-  // All designs of this study fail.
+  // All designs of the next study fail.
   std::string failing = study("body.thickness_mm");
   failing.replace(failing.find("from = 1\nto = 3"), 15, "from = -3\nto = -1");
   folder.write("study.toml", failing);
   EXPECT_EQ(retrace(folder, {"optimize", "study.toml", "-o", "out", "--quiet"}).code, 1);
   folder.write("study.toml", study("body.thickness_mm"));
   EXPECT_EQ(retrace(folder, {"optimize", "study.toml", "-o", "out", "--quiet"}).code, 0);
-  // A store with results is kept.
+  // A store with results must not be replaced.
   EXPECT_EQ(refused_at(retrace(folder, {"optimize", "study.toml", "-o", "out"})), "out/optimum.sqlite");
 }
 
@@ -111,7 +111,7 @@ TEST(OptimizeStop, WritesThePlotsAndAllDesigns) {
        {"optimum.svg", "optimum.png", "constraints.svg", "constraints.png", "designs.csv", "front.csv", "best.toml"})
     EXPECT_TRUE(fs::exists(folder.path() / "out" / file)) << file;
   const Json json = folder.json("out/optimum.json");
-  // The prisms are 0.5 mm deep, so that the plate can be 2.5 mm thick.
+  // Plate and prisms together may be 3 mm thick. The prisms are 0.5 mm deep, so the plate may be 2.5 mm thick.
   EXPECT_NEAR(json["best"]["body.thickness_mm"].get<double>(), 2.5, 1e-6);
   EXPECT_EQ(json["designs"].size(), json["evaluations"].get<std::size_t>());
 }

@@ -1,5 +1,5 @@
-// Far fields of single cube corners, compared with an independent model of the six sectors, and with Parseval's
-// theorem.
+// Tests of the far field of single cube corners. The references are an independent model of the six sectors of a cube
+// corner (SectorModel), closed forms and Parseval's theorem.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ CubeCorner corner_of(const SectorCube& cube) {
   return CubeCorner(design::parse_design(design_of(cube), "cube.toml"), {}, false);
 }
 
-/// Returns offsets of direction cosines within a window.
+/// Returns equally spaced offsets of a direction cosine within a window.
 std::vector<double> offsets_within(double window, int count) {
   std::vector<double> offsets;
   for (int k = 0; k < count; ++k) offsets.push_back(window * (2.0 * k / (count - 1) - 1.0));
@@ -64,8 +64,8 @@ std::vector<Vec3> directions_around(const Vec3& to_source, const std::vector<dou
   return directions;
 }
 
-/// Random cubes with circular and hexagonal faces: coated or not, with errors up to 3 arcsec, recesses of up to 3 mm
-/// and incidences up to 40 degrees.
+/// Returns cubes with random properties: circular or hexagonal face, with or without coating, angle errors up to 3
+/// arcsec, recesses up to 3 mm, and angles of incidence up to 40 degrees.
 std::vector<SectorCube> random_cubes(int count) {
   std::mt19937 random(66);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -116,7 +116,7 @@ TEST(CubeField, StokesParametersAgreeWithSixSectors) {
   }
 }
 
-/// Returns the power within a circle of direction cosines, for unpolarised light and unit incident power.
+/// Returns the power inside a circle of direction cosines, for unpolarised incident light of power 1.
 double power_within(const studies::CubeField& field, double radius, double step) {
   const auto reach = static_cast<int>(std::ceil(radius / step));
   std::vector<Vec3> directions;
@@ -131,9 +131,9 @@ double power_within(const studies::CubeField& field, double radius, double step)
   return sum * step * step / (4.0 * std::numbers::pi * 1e-6 * field.beam_mm2());
 }
 
-/// Mirrors return all light that crosses the entrance face. The face reflects the fraction R of it back to the mirrors
-/// each time, so that the returned power is T^2 (1 + R + R^2 + ...) with all reflections. Light that returns one, three
-/// or more times has the same shape, and only the powers differ.
+/// All facets are mirrors, so light can leave only through the entrance face. At each arrival, the face transmits the
+/// fraction T = 1 - R and reflects the fraction R back to the facets. The power that leaves after k retroreflections is
+/// therefore T^2 R^(k - 1). If the request includes reflections at the face, all k count. Otherwise, only odd k count.
 TEST(CubeField, PowerOfMirrorsBehindAFaceIsAGeometricSeries) {
   for (const double index : {1.1, 1.2, 1.3, 1.4, 1.4607, 1.5, 1.7, 1.9, 2.0, 2.3, 3.0})
     for (const bool is_round : {true, false}) {
@@ -146,14 +146,14 @@ TEST(CubeField, PowerOfMirrorsBehindAFaceIsAGeometricSeries) {
         const CubeCorner corner(design::parse_design(text, "cube.toml"), {}, with_reflections);
         const studies::CubeField field = corner.field(Vec3::UnitZ(), 0, nullptr);
         const double odd = std::pow(1.0 - r, 2.0) / (1.0 - r * r);
-        const double all = r + (1.0 - r);  // the first reflection at the face, and all light that enters
+        const double all = r + (1.0 - r);  // first reflection at the outer side of the face, and all light that enters
         EXPECT_NEAR(field.diffracted_power() + field.undiffracted_power(), with_reflections ? all : odd, 2e-6)
             << index << ' ' << is_round;
       }
     }
 }
 
-/// Returns the cross section towards the source of an array of cubes, in m2.
+/// Returns the cross section of an array of cubes in the direction to the source, in m2.
 double centre_of(const std::string& surface, const std::vector<studies::ArrayCube>& cubes) {
   const std::string text =
       "schema = \"retrace.design/1\"\n[element]\nkind = \"round_icc\"\ndiameter_mm = 20\n[body]\nrefractive_index = "
@@ -167,8 +167,8 @@ double centre_of(const std::string& surface, const std::vector<studies::ArrayCub
   return result.points.at(0).centre.total;
 }
 
-/// The errors of a cube replace those of the design, whatever the unit of the design's errors. Equal cubes with
-/// parallel axes return the sum of their light.
+/// The angle errors of a cube must replace the angle errors of the design, which may be given in either unit. An array
+/// of equal cubes with parallel axes must return the sum of their light.
 TEST(CubeField, ErrorsOfACubeReplaceThoseOfTheDesign) {
   studies::ArrayCube own;
   own.dihedral_error_arcsec = {1.0, 0.5, -1.0};
@@ -186,8 +186,8 @@ TEST(CubeField, ErrorsOfACubeReplaceThoseOfTheDesign) {
   EXPECT_NEAR(centre_of("dihedral_error_arcsec = 2\n", row), 7.0 * expected, 1e-6 * expected);
 }
 
-/// Sectors do not overlap. The integral of the Stokes parameters over the far field is therefore the sum over all
-/// beams, which the tracer computes without fields.
+/// Sectors do not overlap. The Stokes parameters, integrated over the far field, must therefore be equal to their sum
+/// over all beams. The tracer computes this sum without fields.
 TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
   SectorCube cube;
   cube.aperture_mm = 4.0;
@@ -210,8 +210,8 @@ TEST(CubeField, IntegralsOfStokesParametersAreThoseOfTheBeams) {
   EXPECT_GT(std::abs(beams.u) + std::abs(beams.v), 0.1 * beams.i);
 }
 
-/// The power beyond a large angle a falls as 1 / a. The powers within several angles are therefore fitted by a line as
-/// a function of 1 / a. The line gives the limit for infinite angles.
+/// The power outside a large angle a is proportional to 1 / a. A line is therefore fitted to the power inside the angle
+/// a as a function of 1 / a. Its value at 1 / a = 0 is the total power.
 TEST(CubeField, IntegralIsTheDiffractedPower) {
   SectorCube cube;
   cube.aperture_mm = 4.0;
@@ -232,9 +232,9 @@ TEST(CubeField, IntegralIsTheDiffractedPower) {
   EXPECT_NEAR(limit, field.diffracted_power(), 1e-4 * field.diffracted_power());
 }
 
-/// A cube with equal errors and light along its axis is symmetric about the plane y = 0 and under rotations by 120
-/// degrees. Circular light has no preferred direction across the beam. A reflection exchanges right- and left-handed
-/// light.
+/// With equal angle errors and normal incidence, the cube is symmetric about the plane y = 0 and under rotations by 120
+/// degrees. Circularly polarised light has no preferred direction across the beam. The reflection at the plane y = 0
+/// exchanges right-handed and left-handed light.
 TEST(CubeField, CircularLightHasTheSymmetryOfTheCube) {
   SectorCube cube;
   cube.errors_arcsec = {1.25, 1.25, 1.25};
@@ -259,7 +259,7 @@ TEST(CubeField, CircularLightHasTheSymmetryOfTheCube) {
   }
 }
 
-/// The phase of light that is returned through the apex corresponds to the optical path 2 L sqrt(n^2 - sin^2 i).
+/// Light that returns through the apex has the optical path 2 L sqrt(n^2 - sin^2 i), from which its phase is computed.
 TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   const std::string text =
       "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
@@ -271,8 +271,8 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   const double edge = 30.0 / (2.0 * std::sqrt(2.0 / 3.0));
   EXPECT_NEAR(corner.depth_mm(), 2.0 + 2.0 * edge / std::sqrt(3.0), 1e-9);
   for (const double sine : {0.0, 0.3, 0.6}) {
-    // Phase in cycles at the wavelength w: path / w. The derivative of the phase with respect to 1 / w is the group
-    // path.
+    // The phase in cycles is path / w, where w is the wavelength. The derivative of the phase with respect to 1 / w is
+    // the group path.
     const auto phase = [&](const studies::CubeIndex& at) {
       return corner.depth_mm() * std::sqrt(at.index * at.index - sine * sine) / at.wavelength_nm;
     };
@@ -280,7 +280,7 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
         (phase(indices[0]) - phase(indices[2])) / (1.0 / indices[0].wavelength_nm - 1.0 / indices[2].wavelength_nm);
     EXPECT_NEAR(studies::range_correction_mm(corner.depth_mm(), indices[1].index, indices[1].group_index, sine), group,
                 1e-6);
-    // Without dispersion, the usual formula is exact.
+    // Without dispersion, the usual approximation must be exact.
     EXPECT_NEAR(studies::range_correction_mm(corner.depth_mm(), 1.46, 1.46, sine),
                 corner.depth_mm() * std::sqrt(1.46 * 1.46 - sine * sine), 1e-9);
   }
@@ -288,18 +288,18 @@ TEST(CubeCorner, RangeCorrectionIsTheDerivativeOfThePhase) {
   EXPECT_NEAR(studies::usual_range_correction_mm(20.0, 1.48, 0.5), 20.0 * std::sqrt(1.48 * 1.48 - 0.25), 1e-9);
 }
 
-/// The derivative of the dispersion formula of fused silica is known in closed form.
+/// The dispersion formula of fused silica can be differentiated in closed form.
 TEST(CubeCorner, GroupIndexIsExact) {
   const std::string text =
       "schema = \"retrace.design/1\"\n[element]\nkind = \"hexagonal_icc\"\naperture_mm = 30\n[array]\narrangement = "
       "\"single\"\n[body]\nmaterial = \"fused-silica\"\nthickness_mm = 2\n";
   const CubeCorner corner(design::parse_design(text, "cube.toml"), {532.0, 1064.0}, false);
-  // Sellmeier's formula of Malitson (1965), with lengths in um.
+  // Dispersion formula of fused silica by Malitson (1965), with lengths in um.
   const std::array<std::array<double, 2>, 3> terms = {
       {{0.6961663, 0.00467914825849}, {0.4079426, 0.01351206307396}, {0.8974794, 97.934002537921}}};
   for (const studies::CubeIndex& at : corner.indices()) {
     const double w2 = std::pow(1e-3 * at.wavelength_nm, 2.0);
-    double square = 1.0, slope = 0.0;  // n^2, and its derivative with respect to w^2
+    double square = 1.0, slope = 0.0;  // n^2, and the derivative of n^2 with respect to w^2
     for (const auto& [strength, resonance] : terms) {
       square += strength * w2 / (w2 - resonance);
       slope -= strength * resonance / std::pow(w2 - resonance, 2.0);
@@ -308,8 +308,8 @@ TEST(CubeCorner, GroupIndexIsExact) {
     EXPECT_NEAR(at.index, n, 1e-12);
     EXPECT_NEAR(at.group_index, n - w2 * slope / n, 1e-9);
   }
-  // At the temperature difference t, the index relative to vacuum increases by (n^2 - 1) / (2 n) D0 t. The index of air
-  // decreases, which adds about 7e-5.
+  // When the temperature increases by t, the index relative to vacuum increases by (n^2 - 1) / (2 n) D0 t. The index of
+  // air decreases, which increases the relative index by a further 7e-5.
   const CubeCorner hot(
       design::with(design::parse_design(text, "cube.toml"), std::vector<std::string>{"body.temperature_c=80"}), {532.0},
       false);

@@ -1,4 +1,4 @@
-// Tests of the reader for files of cubes: rings, grids, single cubes, tables and error messages.
+// Tests of the reader of files of cubes: rings, grids, single cubes, CSV tables and error messages.
 
 #include <gtest/gtest.h>
 

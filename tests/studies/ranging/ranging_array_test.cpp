@@ -55,8 +55,8 @@ std::vector<ArrayCube> random_array(int count) {
   return cubes;
 }
 
-/// Returns the Stokes parameters of a single cube. The light is traced in the frame of this cube, and symmetries are
-/// not used.
+/// Returns the Stokes parameters of the light that a single cube returns. The light is traced in the part frame of this
+/// cube, without using symmetries.
 Stokes alone(const CubeCorner& corner, const ArrayCube& cube, const raytrace::ReturnFrame& frame, const Vec2& angles,
              const Stokes& sent) {
   const Eigen::Matrix3d own = studies::array_from_cube(cube).transpose();
@@ -99,7 +99,8 @@ TEST(RangingArray, CubesWithTheSameIncidenceShareOneTrace) {
   const LitCubes below(ring, -Vec3::UnitZ(), 0, nullptr);
   EXPECT_EQ(below.count(), 0u);
   EXPECT_EQ(below.traced(), 0u);
-  // The plane y = 0 is a plane of symmetry: cubes at the azimuths a and -a see mirror images of the light.
+  // The plane y = 0 is a symmetry plane of the ring. Light reaches the cubes at the azimuths a and -a from directions
+  // that are mirror images of each other.
   const CubeSet symmetric = set_of(studies::cubes_of(studies::CubeRing{150.0, 60.0, 12, 0.0, 0.0, 0.0}));
   const LitCubes oblique(symmetric, Vec3(0.3, 0.0, 1.0).normalized(), 0, nullptr);
   EXPECT_EQ(oblique.traced(), 7u);
@@ -143,7 +144,7 @@ TEST(RangingArray, ResponseHasThePowerAndTheMomentsOfTheArray) {
   EXPECT_NEAR(squares / sum, all.rms_mm * all.rms_mm + sigma * sigma, 1e-3);
 }
 
-/// Returns echoes of equal strength and polarisation.
+/// Returns light of several cubes with equal cross sections and polarisations, at equal distances in range.
 std::vector<CubeEcho> equal_echoes(std::size_t count, double distance_mm) {
   std::vector<CubeEcho> echoes;
   for (std::size_t k = 0; k < count; ++k)
@@ -151,7 +152,8 @@ std::vector<CubeEcho> equal_echoes(std::size_t count, double distance_mm) {
   return echoes;
 }
 
-/// The power of a sum of N unit phasors with random phases has the mean N and the variance N (N - 1).
+/// Reference: the squared modulus of the sum of N unit phasors with random phases has the mean N and the variance N (N
+/// - 1).
 TEST(RangingShots, ContinuousLightHasTheMomentsOfRandomPhasors) {
   const std::size_t count = 20, shots = 40000;
   const std::vector<CubeEcho> echoes = equal_echoes(count, 3.0);
@@ -161,13 +163,14 @@ TEST(RangingShots, ContinuousLightHasTheMomentsOfRandomPhasors) {
   const double mean = 4e4 * static_cast<double>(count);
   EXPECT_NEAR(summary.mean_m2, mean, 5.0 * mean / std::sqrt(static_cast<double>(shots)));
   EXPECT_NEAR(summary.deviation_m2, mean * std::sqrt(1.0 - 1.0 / static_cast<double>(count)), 0.03 * mean);
-  // For an exponential distribution, the fractions above the mean and above twice the mean are known.
+  // The cross section is exponentially distributed. The fractions of shots above the mean and above twice the mean are
+  // therefore known.
   for (const double times : {1.0, 2.0}) {
     const auto above = std::count_if(simulated.begin(), simulated.end(),
                                      [&](const studies::Shot& shot) { return shot.cross_section_m2 > times * mean; });
     EXPECT_NEAR(static_cast<double>(above) / static_cast<double>(shots), std::exp(-times), 0.02);
   }
-  // Different seeds give different shots, and equal seeds give equal shots.
+  // Different seeds must give different shots, and equal seeds must give equal shots.
   EXPECT_EQ(studies::simulated_shots(echoes, {3, sent, std::nullopt, 1}, nullptr)[2].cross_section_m2,
             simulated[2].cross_section_m2);
   EXPECT_NE(studies::simulated_shots(echoes, {3, sent, std::nullopt, 2}, nullptr)[2].cross_section_m2,
@@ -182,7 +185,8 @@ TEST(RangingShots, ShortPulsesDoNotInterfere) {
   }
 }
 
-/// A very long pulse acts like continuous light. Two cubes with the phase difference f then give the power 2 + 2 cos f.
+/// Very long pulses must interfere like continuous light. Two cubes of cross section 1 with the phase difference f have
+/// the cross section 2 + 2 cos f.
 TEST(RangingShots, LongPulsesInterfere) {
   const std::vector<CubeEcho> echoes = equal_echoes(2, 0.01);
   const Stokes sent{1.0, 0.0, 0.0, 1.0};
@@ -219,14 +223,14 @@ TEST(Aberration, OfAnOrbitLiesBetweenBothDirectionsOfTheVelocity) {
 }
 
 TEST(Aberration, StatisticsOfAPolynomialAreExact) {
-  // The function 2 + x + 3 (x^2 + y^2) on the annulus from 1 to 2, in units of 1e-5 rad.
+  // The test function is 2 + x + 3 (x^2 + y^2) on the annulus from 1 to 2. The unit of x and y is 1e-5 rad.
   const auto values = [](const std::vector<Vec2>& angles) {
     std::vector<double> result;
     for (const Vec2& a : angles) result.push_back(2.0 + 1e5 * a.x() + 3e10 * a.squaredNorm());
     return result;
   };
   const studies::AnnulusStatistics s = studies::statistics_over({1e-5, 2e-5}, 1e-5, values);
-  EXPECT_NEAR(s.mean, 2.0 + 3.0 * 2.5, 1e-9);  // the mean of r^2 is (1 + 4) / 2
+  EXPECT_NEAR(s.mean, 2.0 + 3.0 * 2.5, 1e-9);  // the mean of x^2 + y^2 over the annulus is (1 + 4) / 2
   EXPECT_NEAR(s.max, 2.0 + 2.0 + 12.0, 1e-6);
   EXPECT_NEAR(s.min, 2.0 - 1.0 + 3.0, 1e-6);
   const studies::AnnulusStatistics ring = studies::statistics_over({1e-5, 1e-5}, 1e-5, values);
@@ -258,7 +262,7 @@ TEST(Ranging, PolarisationsAddUpToTheTotal) {
   EXPECT_FALSE(unpolarised.points[0].centre.crossed);
 }
 
-/// A cube of mirrors reverses the sense of circular light and preserves linear polarisation.
+/// A cube corner of mirrors reverses the handedness of circularly polarised light and preserves linear polarisation.
 TEST(Ranging, MirrorsCrossCircularLight) {
   const design::Design mirrors = design::with(
       cube_design("0"), std::vector<std::string>{"idealisation.facets=mirror", "idealisation.entrance=lossless"});

@@ -1,4 +1,4 @@
-// Tests of the command `retrace ranging`: files, values, exit codes and refused options.
+// Tests of the command `retrace ranging`: output files, values, exit codes and refused options.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST(RangingCommand, WritesPointsMapAndDrawings) {
   EXPECT_EQ(json["schema"], "retrace.ranging/1");
   EXPECT_NEAR(point["centre"]["parallel_m2"].get<double>() + point["centre"]["crossed_m2"].get<double>(),
               point["centre"]["total_m2"].get<double>(), 1.0);
-  // The peak is inversely proportional to the square of the wavelength.
+  // The cross section of the mirror is inversely proportional to the square of the wavelength.
   EXPECT_NEAR(json["points"][2]["mirror_m2"].get<double>(), 0.25 * point["mirror_m2"].get<double>(), 1.0);
   EXPECT_NEAR(point["range_correction_mm"].get<double>(),
               json["depth_mm"].get<double>() * point["group_index"].get<double>(), 1e-6);
@@ -55,13 +55,21 @@ TEST(RangingCommand, ArraysHaveCubesPulsesAndShots) {
   const Json json = folder.json("out/ranging.json");
   EXPECT_EQ(json["points"][0]["ranges"]["lit_cubes"], 6);
   EXPECT_EQ(json["points"][0]["shots"]["count"], 50);
-  // A different seed changes only the shots.
+  // A different seed must change only the single shots.
   Arguments other = arguments;
   other.insert(other.end(), {"--seed", "2"});
   EXPECT_EQ(retrace(folder, other).code, 0);
   const Json again = folder.json("out/ranging.json");
   EXPECT_EQ(again["points"][0]["ranges"], json["points"][0]["ranges"]);
   EXPECT_NE(again["points"][0]["shots"], json["points"][0]["shots"]);
+}
+
+TEST(RangingCommand, EndingsOfFilesHaveNoCase) {
+  const TemporaryFolder folder;
+  write_inputs(folder);
+  folder.write("CUBES.CSV", "x_mm,y_mm,z_mm,axis_x,axis_y,axis_z\n0,0,0,0,0,1\n50,0,0,0,0,1\n");
+  const Json json = retrace_json(folder, {"ranging", "cube.toml", "--cubes", "CUBES.CSV", "--map-points", "3"});
+  EXPECT_EQ(json["points"][0]["ranges"]["lit_cubes"], 2);
 }
 
 TEST(RangingCommand, CubesOnTheFarSideAreDark) {
@@ -105,6 +113,8 @@ TEST(RangingCommand, WrongOptionsAreRefused) {
   EXPECT_EQ(with("--polarisation-deg", "10"), "--polarisation-deg");
   EXPECT_EQ(with("--aberration-arcsec", "3,2"), "--aberration-arcsec");
   EXPECT_EQ(with("--aberration-arcsec", "3"), "--aberration-arcsec");
+  EXPECT_EQ(with("--aberration-arcsec", "1,36000"), "--aberration-arcsec");
+  EXPECT_EQ(with("--source-arcsec", "36000"), "--map-points");
   EXPECT_EQ(with("--orbit-km", "0"), "--orbit-km");
   EXPECT_EQ(with("--elevation-deg", "10"), "--elevation-deg");
   EXPECT_EQ(with("--window", "0"), "--window");

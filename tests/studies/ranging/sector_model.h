@@ -1,10 +1,10 @@
 #pragma once
 
-// Independent model of the far field of a solid cube corner. A sector is a region of the entrance face whose light
-// meets the facets in the same order. The model traces light from sub-pixels of the face through a cube without errors
-// to find the sector of each pixel. The Jones matrix and the direction of each sector follow from Fresnel's formulas at
-// the facets with their errors. A discrete Fourier transform of the sectors gives the far field. The model shares no
-// code with the engine.
+// Independent model of the far field of a solid cube corner. It shares no code with the engine. A sector is the region
+// of the entrance face whose light meets the three facets in the same order. The model traces rays from points of the
+// face through an ideal cube to determine the sector of each pixel. Fresnel's formulas at the facets, including their
+// angle errors, give the Jones matrix and the direction of each sector. A discrete Fourier transform of all sectors
+// gives the far field.
 
 #include <Eigen/Dense>
 #include <array>
@@ -19,19 +19,19 @@ namespace retrace::testing {
 
 /// Properties of a cube for the sector model.
 struct SectorCube {
-  double aperture_mm = 38.1;  ///< diameter of the circular face, or of the circle around the hexagonal face
+  double aperture_mm = 38.1;  ///< diameter of the circular face, or of the hexagon's circumscribed circle
   double thickness_mm = 0.1;
   double index = 1.46;
   double wavelength_nm = 532.0;
   std::array<double, 3> errors_arcsec{};
-  std::optional<std::complex<double>> metal = {};  ///< complex index of an opaque coating; empty: no coating
+  std::optional<std::complex<double>> metal = {};  ///< complex index of an opaque metal coating; empty: no coating
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
-  bool is_round = false;   ///< true for a circular face, false for a hexagonal one
-  double recess_mm = 0.0;  ///< depth of a circular face in its mount
+  bool is_round = false;   ///< true: circular face; false: hexagonal face
+  double recess_mm = 0.0;  ///< depth of a circular face below the edge of its mount
 };
 
-/// Far field of the sector model on a square grid of direction cosines around the direction to the source.
+/// Far field of a cube corner on a square grid of direction cosines around the direction to the source.
 class SectorModel {
  public:
   using Vec2 = Eigen::Vector2d;
@@ -58,16 +58,16 @@ class SectorModel {
   }
 
   const Vec3& to_source() const { return to_source_; }
-  /// Returns the area of the entrance face that returns light, projected perpendicular to the beam.
+  /// Returns the area of the entrance face from which light returns, projected perpendicular to the beam.
   double active_mm2() const {
     double sum = 0.0;
     for (const auto& [order, sector] : sectors_) sum += sector.weights.sum();
     return sum * step_mm_ * step_mm_ * to_source_.z();
   }
 
-  /// Returns Jones matrices along the axes (right, up), row by row along y. Their squared moduli are cross sections in
-  /// m2.
-  /// \param offsets offsets of the direction cosines from those of the source
+  /// Returns a Jones matrix for each direction, along the axes (right, up). Directions are ordered row by row along y.
+  /// The squared moduli are cross sections in m2.
+  /// \param offsets direction cosines relative to the direction to the source
   std::vector<Jones> far_field(const std::vector<double>& offsets) const {
     const double wavelength_mm = 1e-6 * cube_.wavelength_nm;
     const double k0 = 2.0 * std::numbers::pi / wavelength_mm;
@@ -88,8 +88,8 @@ class SectorModel {
           sum[static_cast<std::size_t>(row * count + column)] +=
               pattern(row, column) * step_mm_ * step_mm_ * sector.phase * sector.jones;
     }
-    // The area of the beam is A cos t, where t is the angle of incidence. The intensity per solid angle contains
-    // another factor cos t.
+    // The beam has the area A cos t, where t is the angle of incidence. The intensity per solid angle contains another
+    // factor cos t.
     const double scale = std::sqrt(4.0 * std::numbers::pi * 1e-6) / wavelength_mm * to_source_.z();
     for (Jones& jones : sum) jones *= scale;
     return sum;
@@ -97,7 +97,7 @@ class SectorModel {
 
  private:
   struct Sector {
-    Eigen::MatrixXd weights;  ///< covered fraction of each pixel of the entry; first index: x
+    Eigen::MatrixXd weights;  ///< covered fraction of each pixel at the entry points; first index: x
     Vec2 cosines = Vec2::Zero();
     Jones jones = Jones::Zero();
     Complex phase = 1.0;
@@ -110,14 +110,14 @@ class SectorModel {
     return d;
   }
   double entry_at(Eigen::Index pixel) const { return (static_cast<double>(pixel) + 0.5 - 0.5 * pixels_) * step_mm_; }
-  /// Returns one coordinate of the exit point of light that enters at a pixel. Entry point and exit point are symmetric
-  /// about the image of the apex.
+  /// Returns one coordinate of the exit point of light that enters at the centre of a pixel. Entry point and exit point
+  /// are symmetric about the image of the apex.
   double exit_at(Eigen::Index pixel, int axis) const {
     const Vec3 d = inside_direction();
     const double centre = apex_[axis] + (cube_.thickness_mm - apex_.z()) * d[axis] / d.z();
     return 2.0 * centre - entry_at(pixel);
   }
-  /// Returns the mean of exp(-i kappa x) over a pixel.
+  /// Returns the mean of exp(-i kappa x) over the width of a pixel.
   Complex pixel_wave(double kappa, double x) const {
     const double half = 0.5 * kappa * step_mm_;
     return std::polar(std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0, -kappa * x);
@@ -146,13 +146,13 @@ class SectorModel {
     return true;
   }
 
-  /// Returns true if light that enters or leaves at a point of the face passes the edge of the mount.
+  /// Returns true if light that enters or leaves at a point of the face is inside the circular edge of the mount.
   bool passes_mount(const Vec2& at) const {
     return is_in_outline(at + cube_.recess_mm / to_source_.z() * to_source_.head<2>());
   }
 
-  /// Returns the order in which light that enters at a point meets the facets. Returns nothing if it meets a side or
-  /// the mount.
+  /// Returns the order in which light meets the facets if it enters at a given point. Returns nothing if the light
+  /// meets a side or the mount.
   std::optional<Order> order_of(const Vec2& at) const {
     if (!is_in_outline(at) || !passes_mount(at)) return std::nullopt;
     Vec3 p(at.x(), at.y(), cube_.thickness_mm);
@@ -183,8 +183,8 @@ class SectorModel {
     return order;
   }
 
-  /// Sets the inward normals of the facets. Among all normals with the given errors, the nearest to the normals of the
-  /// perfect cube are used.
+  /// Sets the inward normals of the facets. Among all normals with the required angle errors, those nearest to the
+  /// ideal normals are used.
   void tilt_facets() {
     Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();
     for (int k = 0; k < 3; ++k) {
@@ -199,7 +199,7 @@ class SectorModel {
     }
   }
 
-  /// Field vectors of light for unit amplitudes along the two axes of the source.
+  /// Field vectors of the light for unit amplitudes along each of the two axes of the source.
   using Field = Eigen::Matrix<Complex, 3, 2>;
 
   static void resolve(const Vec3& d_in, const Vec3& d_out, const Vec3& normal, Complex along_s, Complex along_p,
@@ -239,9 +239,9 @@ class SectorModel {
     sector.cosines = cosines;
     sector.jones.row(0) = right_.transpose().cast<Complex>() * field;
     sector.jones.row(1) = up_.transpose().cast<Complex>() * field;
-    // All sectors have the same phase at the apex. From the apex, the wave of a sector is continued to the entrance
-    // face along the direction that light has in a cube without errors. The sector is located around the point of the
-    // face that this line reaches.
+    // At the apex, the waves of all sectors have the same phase. From there, each wave is propagated to the entrance
+    // face along the direction of the light in an ideal cube. The point at which this line meets the face is the centre
+    // of the sector's pattern.
     const Vec3 perfect = -inside_direction();
     const Vec3 to_face = (cube_.thickness_mm - apex_.z()) / perfect.z() * perfect;
     const double k0 = 2.0 * std::numbers::pi / (1e-6 * cube_.wavelength_nm);

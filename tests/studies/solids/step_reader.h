@@ -11,6 +11,10 @@ struct StepFindings {
   int solids = 0;
   int shells = 0;
   int faces = 0;
+  int planes = 0;         ///< number of faces on planes
+  int cylinders = 0;      ///< number of faces on circular cylinders
+  int spheres = 0;        ///< number of faces on spheres
+  int splines = 0;        ///< number of faces on B-spline surfaces
   bool is_valid = false;  ///< result of BRepCheck
   int free_edges = 0;     ///< number of edges that do not belong to two faces
   double volume_mm3 = 0.0;

@@ -24,7 +24,7 @@ using test::single_part;
 
 test::StepFindings read_back(const BoundaryMesh& mesh) {
   const auto file = std::filesystem::temp_directory_path() / ("retrace_step_" + std::to_string(::getpid()) + ".step");
-  std::ofstream(file, std::ios::binary) << step_text(faceted_solid(mesh), "test");
+  std::ofstream(file, std::ios::binary) << step_text({faceted_solid(mesh), {}}, "test");
   const test::StepFindings found = test::read_step(file.string());
   std::filesystem::remove(file);
   return found;
@@ -109,7 +109,7 @@ TEST(Step, RoundedEdgesAndRandomTiltsAreSolids) {
 }
 
 TEST(Step, TheSameSolidGivesTheSameText) {
-  const FacetedSolid solid = faceted_solid(closed_boundary(build_part(single_part(HexagonalCube{1.6}))));
+  const ExactSolid solid = {faceted_solid(closed_boundary(build_part(single_part(HexagonalCube{1.6})))), {}};
   const std::string text = step_text(solid, "cube");
   EXPECT_TRUE(text == step_text(solid, "cube"));
   EXPECT_TRUE(text.find("AUTOMOTIVE_DESIGN") != std::string::npos);  // AP214
@@ -123,7 +123,7 @@ TEST(Step, EdgesThatItCannotHoldAreRefused) {
     spec.thickness_mm = 1e-6;
     return spec;
   }()));
-  EXPECT_THROW(step_text(faceted_solid(mesh), "speck"), InputError);
+  EXPECT_THROW(step_text({faceted_solid(mesh), {}}, "speck"), InputError);
 }
 
 }  // namespace

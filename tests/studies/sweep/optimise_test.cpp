@@ -66,7 +66,7 @@ TEST(Optimise, ReportsTheProgressOfEachGroupOfDesigns) {
   Groups groups;
   const Optimum optimum = optimise(study, read_optimise(study), store, &groups, nullptr);
   ASSERT_FALSE(groups.sizes.empty());
-  EXPECT_EQ(groups.finished, optimum.evaluations) << "each design belongs to one group, and each group is finished";
+  EXPECT_EQ(groups.finished, optimum.designs.size()) << "each design belongs to one group, and each group is finished";
   Groups again;
   optimise(study, read_optimise(study), store, &again, nullptr);
   EXPECT_TRUE(again.sizes.empty()) << "designs of the store are not computed";
@@ -216,7 +216,7 @@ TEST(Optimise, ReportsTheConstraintThatExcludesAllDesigns) {
   const Optimum optimum = optimum_of(study);
   EXPECT_FALSE(optimum.best.has_value());
   ASSERT_EQ(optimum.exclusions.size(), 2U);
-  EXPECT_EQ(optimum.exclusions[0].designs, optimum.evaluations);
+  EXPECT_EQ(optimum.exclusions[0].designs, optimum.designs.size());
   EXPECT_EQ(optimum.exclusions[0].min_violation, 4.0);
   EXPECT_EQ(optimum.exclusions[1].designs, 0U);
   EXPECT_EQ(optimum.exclusions[1].min_violation, 0.0);

@@ -251,7 +251,7 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
   }
   EXPECT_EQ(optimum.best->values[0].shown, at.value());
   EXPECT_EQ(optimum.best->objective, best);
-  EXPECT_EQ(optimum.evaluations, 5U);
+  EXPECT_EQ(optimum.designs.size(), 5U);
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {

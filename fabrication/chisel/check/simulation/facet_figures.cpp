@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/length_units.h"
+#include "fabrication/chisel/check/simulation/line_moves.h"
 #include "fabrication/chisel/check/simulation/plane_fit.h"
 
 namespace retrace::fabrication {
@@ -41,8 +42,8 @@ class Measurer {
   Measurer(const PrismGroove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
            const ToolWedge& wedge, const Prediction& prediction, double tolerance_mm)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
-    for (const SweptVolume& sweep : sweeps) by_pose_.push_back(&sweep);
-    std::ranges::stable_sort(by_pose_, {}, &SweptVolume::pose);
+    for (const SweptVolume& sweep : sweeps) by_pose_.push_back({&sweep, swept_sides(wedge, sweep)});
+    std::ranges::stable_sort(by_pose_, {}, [](const SweptBody& body) { return body.move->pose; });
     // Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
     constexpr double max_end_fraction = 0.01;
     find_stations(std::min(tolerance_mm, max_end_fraction * groove.half_width_mm));
@@ -79,20 +80,20 @@ class Measurer {
       select_sweeps(along);
       double previous_slant = 0.0;
       double previous_top = 0.0;
-      for (const double slant : slants) {
-        const double floor_mm = is_other_ploughed && slant == kAtRootMm
-                                    ? ploughed_height(1 - facet, along, 0.0).high / sine_between()
-                                    : 0.0;
-        if (!is_clear_of_other(slant)) continue;
-        const LineSurface surface = slant == kAtRootMm ? at_root(facet, along, kAtRootMm + floor_mm)
-                                                       : surface_at(facet, along, slant + floor_mm);
+      const auto take_line = [&](double slant, const LineSurface& surface) {
         take(figures, surface, slant, is_ploughed ? ploughed_height(facet, along, slant) : Interval{});
         if (is_for_plane(slant, along)) plane.add(slant, along, surface.lowest);
         const double top = std::min(surface.top, bisector_height_mm(slant));
         figures.residual_mm3 += 0.5 * (top + previous_top) * (slant - previous_slant) * width_mm;
         previous_slant = slant;
         previous_top = top;
-      }
+      };
+      const double floor_mm = is_other_ploughed ? ploughed_height(1 - facet, along, 0.0).high / sine_between() : 0.0;
+      take_line(kAtRootMm, at_root(facet, along, kAtRootMm + floor_mm));
+      const LineFamily lines = lines_of(facet, along, slants);
+      for_each_line(lines, near_, poses_, [&](std::size_t line, std::span<const SweptVolume* const> moves) {
+        take_line(lines.slants_mm[line], surface_at(facet, along, lines.slants_mm[line], false, moves));
+      });
     }
     plane.fit(figures);
     figures.distance_nm = std::max(figures.highest.nm, -figures.deepest.nm);
@@ -219,8 +220,29 @@ class Measurer {
   /// Selects the sweeps that can cross the measuring lines of a station.
   void select_sweeps(double along) {
     near_.clear();
-    for (const SweptVolume* sweep : by_pose_)
-      if (!is_beside(*sweep, along)) near_.push_back(sweep);
+    near_moves_.clear();
+    for (const SweptBody& body : by_pose_) {
+      if (is_beside(*body.move, along)) continue;
+      near_.push_back(&body);
+      near_moves_.push_back(body.move);
+    }
+  }
+
+  /// Returns the measuring lines of a station that are normal to a facet.
+  /// \param slants distances of the lines from the root; the first one is the line at the root, which is omitted
+  LineFamily lines_of(std::size_t facet, double along, std::span<const double> slants) const {
+    const DesignFacet& design = groove_.facets[facet];
+    LineFamily lines;
+    lines.origin_mm = groove_.root_mm + along * groove_.root_direction;
+    lines.up = design.up_slope;
+    lines.direction = design.normal;
+    lines.reach_mm = kReachRatio * groove_.facet_length_mm;
+    for (const double slant : slants.subspan(1)) {
+      if (!is_clear_of_other(slant)) continue;
+      lines.slants_mm.push_back(slant);
+      lines.exits_mm.push_back(exit_of(facet, lines.origin_mm + slant * design.up_slope));
+    }
+    return lines;
   }
 
   /// Returns true if a sweep intersects no measuring line of a station, because the whole tool remains on one side of
@@ -237,10 +259,10 @@ class Measurer {
     return std::min(at_start_mm, at_end_mm) > allowed_mm || std::max(at_start_mm, at_end_mm) < -allowed_mm;
   }
 
-  LineSurface surface_at(std::size_t facet, double along, double slant) {
-    return surface_at(facet, along, slant, slant <= strip_mm_);
-  }
-  LineSurface surface_at(std::size_t facet, double along, double slant, bool is_at_root) {
+  /// Returns the machined surface along a measuring line.
+  /// \param moves moves that may determine the surface, in the order of their poses
+  LineSurface surface_at(std::size_t facet, double along, double slant, bool is_at_root,
+                         std::span<const SweptVolume* const> moves) {
     const DesignFacet& design = groove_.facets[facet];
     const Vec3 point = groove_.root_mm + along * groove_.root_direction + slant * design.up_slope;
     // The residual material at the root is measured along the other facet. The result is the distance from the root at
@@ -250,7 +272,7 @@ class Measurer {
     Vec3 p;
     Vec3 d;
     const SweptVolume* previous = nullptr;
-    for (const SweptVolume* sweep : near_) {
+    for (const SweptVolume* sweep : moves) {
       if (previous == nullptr || previous->pose != sweep->pose) {
         p = poses_[sweep->pose].point(point);
         d = poses_[sweep->pose].direction(direction);
@@ -266,10 +288,10 @@ class Measurer {
   /// the layer is used. The inclined rake face of the last plunge increases the result on the second line, so the
   /// thickness of the layer is subtracted.
   LineSurface at_root(std::size_t facet, double along, double slant) {
-    const LineSurface close = surface_at(facet, along, slant);
+    const LineSurface close = surface_at(facet, along, slant, slant <= strip_mm_, near_moves_);
     const double above = slant + layer_end_mm_;
     if (close.top <= layer_end_mm_) return close;
-    LineSurface clear = surface_at(facet, along, above, true);
+    LineSurface clear = surface_at(facet, along, above, true, near_moves_);
     if (close.top <= clear.top + layer_end_mm_) return close;
     clear.top = std::max(0.0, clear.top - layer_end_mm_);
     return clear;
@@ -352,8 +374,9 @@ class Measurer {
   std::span<const RigidMotion> poses_;
   const ToolWedge& wedge_;
   const Prediction& prediction_;
-  std::vector<const SweptVolume*> by_pose_;  ///< all sweeps, ordered by pose
-  std::vector<const SweptVolume*> near_;     ///< sweeps selected by select_sweeps(), ordered by pose
+  std::vector<SweptBody> by_pose_;              ///< all sweeps, ordered by pose
+  std::vector<const SweptBody*> near_;          ///< sweeps selected by select_sweeps(), ordered by pose
+  std::vector<const SweptVolume*> near_moves_;  ///< moves of `near_`
   Stations stations_;
   double strip_mm_ = 0.0;
   /// Distance from the root up to which the tolerance of the other facet affects the measurement.

@@ -5,7 +5,7 @@ import { angle, percent, short } from "../units.js";
 
 const MAX_SPOTS = 6; // maximum number of spots in the list
 const HALF = 110; // half width of the drawing in its units
-const REACHES_DEG = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
+const REACHES_DEG = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
 const MIN_POWER = 1e-5; // minimum power of a spot that influences the range of the drawing
 
 export class FarFieldPanel {
@@ -17,7 +17,14 @@ export class FarFieldPanel {
       { "aria-label": "Displayed range of directions", onchange: () => this.show() },
       h("option", { value: "near" }, "near the return direction"),
       h("option", { value: "far" }, "all directions"),
+      h("option", { value: "annulus" }, "annulus of velocity aberration"),
     );
+    // Angles of the annulus in seconds of arc. The default is that of satellites at heights of 400 km to 20000 km.
+    this.annulus = [
+      ["Inner", 5],
+      ["Outer", 11],
+    ].map(([name, value]) => h("input", { type: "number", min: 0, step: "any", value, "aria-label": `${name} angle of the annulus in seconds of arc`, onchange: () => this.show() }));
+    this.annulusRow = h("p", { class: "caption annulus" }, "Annulus from ", this.annulus[0], " to ", this.annulus[1], " ″");
     this.rows = h("tbody", {});
     this.rest = h("p", { class: "caption" });
     const table = h(
@@ -26,7 +33,7 @@ export class FarFieldPanel {
       h("thead", {}, h("tr", {}, ...["", "Deviation", "Towards", "Power", "Hits"].map((text, k) => h("th", { scope: "col", class: k > 0 ? "n" : "" }, text)))),
       this.rows,
     );
-    this.node = panel("far", "Far field", { tools: [this.reach] }, h("div", { class: "far-box" }, this.drawing, h("div", { class: "table-box" }, table)), this.rest);
+    this.node = panel("far", "Far field", { tools: [this.reach] }, h("div", { class: "far-box" }, this.drawing, h("div", { class: "table-box" }, table)), this.annulusRow, this.rest);
   }
 
   start() {
@@ -40,8 +47,18 @@ export class FarFieldPanel {
     this.show();
   }
 
-  /** Returns the half width of the drawing in degrees. It contains the cone and the near spots, or all spots. */
+  /** Returns the inner and outer angle of the displayed annulus in degrees, or null if no annulus is displayed. */
+  ring() {
+    if (this.reach.value !== "annulus") return null;
+    const angles = this.annulus.map(({ value }) => Number(value) / 3600);
+    return Math.max(...angles) > 0 ? [Math.min(...angles), Math.max(...angles)] : null;
+  }
+
+  /** Returns the half width of the drawing in degrees. It contains the cone and the near spots, or the annulus, or all
+   * spots. */
   width() {
+    const ring = this.ring();
+    if (ring) return REACHES_DEG.find((deg) => deg >= 1.15 * ring[1]) || 180;
     const away = this.field.spots.filter(({ power }) => power > MIN_POWER).map(({ deviation_deg }) => deviation_deg);
     const near = this.reach.value === "near" ? away.filter((deg) => deg <= Math.max(5, 3 * this.cone_deg)) : away;
     const most = 1.15 * Math.max(this.cone_deg, ...near);
@@ -55,17 +72,21 @@ export class FarFieldPanel {
       this.rest.textContent = "";
       return;
     }
+    const ring = this.ring();
+    this.annulusRow.hidden = this.reach.value !== "annulus";
     const reach = this.width();
     const scale = HALF / reach;
     const rings = [0.5, 1].map((share) => s("circle", { class: "guide", r: share * HALF }));
-    const cone = s("circle", { class: "cone", r: Math.max(1.5, this.cone_deg * scale) });
+    const cones = ring
+      ? ring.map((deg) => s("circle", { class: "annulus", r: deg * scale }))
+      : [s("circle", { class: "cone", r: Math.max(1.5, this.cone_deg * scale) })];
     const label = s("text", { x: HALF * 0.71 + 3, y: HALF * 0.71 + 8 }, angle(reach));
     this.labels = [];
     const spots = this.field.spots
       .map((spot, k) => ({ ...spot, k }))
       .filter(({ deviation_deg }) => deviation_deg <= reach)
       .map((spot) => this.spotOf(spot, scale));
-    this.drawing.replaceChildren(...rings, cone, label, ...spots.reverse());
+    this.drawing.replaceChildren(...rings, ...cones, label, ...spots.reverse());
     this.list();
   }
 
@@ -81,6 +102,11 @@ export class FarFieldPanel {
       group.append(s("text", { x: x + radius + 2, y: y + 3 }, String(k + 1)));
     }
     return group;
+  }
+
+  /** Returns the power of all spots in an annulus. */
+  powerWithin([inner, outer]) {
+    return this.field.spots.filter(({ deviation_deg }) => deviation_deg >= inner && deviation_deg <= outer).reduce((sum, { power }) => sum + power, 0);
   }
 
   list() {
@@ -99,6 +125,10 @@ export class FarFieldPanel {
       ),
     );
     const more = spots.slice(MAX_SPOTS).reduce((sum, { power }) => sum + power, other_power || 0);
-    this.rest.textContent = `The coloured ring is the acceptance cone, ${angle(this.cone_deg)}. ${percent(total_power)} of the light leaves the entrance face; ${percent(more)} in directions that are not in this list.`;
+    const ring = this.ring();
+    const legend = ring
+      ? `The annulus contains ${percent(this.powerWithin(ring))}, without diffraction; \`retrace ranging\` computes the cross section.`
+      : `The coloured ring is the acceptance cone, ${angle(this.cone_deg)}.`;
+    this.rest.textContent = `${legend} ${percent(total_power)} of the light leaves the entrance face; ${percent(more)} in directions that are not in this list.`;
   }
 }
